@@ -1,6 +1,7 @@
 //! A small HTTP/1.1 server for the live page and the metrics. It only answers GET and HEAD, so that nothing can be changed
 //! through it. Pages of others can neither read its answers nor show them.
 
+use crate::bridge_status::BridgeStatus;
 use crate::connection_limit;
 use crate::log::LogWriter;
 use crate::metrics;
@@ -9,7 +10,6 @@ use crate::server::ServerHandle;
 use crate::sockets::{Listener, Stream};
 use crate::supervisor::Supervisor;
 use crate::telemetry::Telemetry;
-use crate::vda5050::bridge::BridgeStatus;
 use serde_json::json;
 use std::io::{self, Read, Write};
 use std::net::{Ipv4Addr, Ipv6Addr};

@@ -14,6 +14,7 @@
 //! query             queries about a fleet                              Query
 //! lines             the line protocol                                  handle
 //! line_angles       degrees in its requests
+//! bridge_status     what the metrics say of the bridge                 BridgeStatus
 //! metrics           metrics for Prometheus
 //! log               log on standard error                              LogWriter
 //! telemetry         data that the supervisor's thread publishes        Telemetry
@@ -32,6 +33,7 @@
 //! sent. If the journal has a thread of its own, they are sent as soon as it is on the disk, and messages that arrive
 //! meanwhile are processed.
 
+pub mod bridge_status;
 pub mod clients;
 mod connection_limit;
 pub mod event;

@@ -1,8 +1,8 @@
 //! Metrics in the text format of Prometheus.
 
+use crate::bridge_status::BridgeStatus;
 use crate::robot::SupervisedRobot;
 use crate::supervisor::Supervisor;
-use crate::vda5050::bridge::BridgeStatus;
 use serde::Serialize;
 use std::fmt::Write;
 use std::time::Duration;
@@ -107,8 +107,11 @@ pub(crate) fn text(supervisor: &Supervisor, latency: &LatencyHistogram, bridge: 
     text
 }
 
+/// Name and help of a gauge, and whether it is 1 for a robot.
+type GaugeOfRobots = (&'static str, &'static str, fn(&SupervisedRobot) -> bool);
+
 fn of_robots(text: &mut String, supervisor: &Supervisor) {
-    let gauges: [(&str, &str, fn(&SupervisedRobot) -> bool); 4] = [
+    let gauges: [GaugeOfRobots; 4] = [
         ("waiting", "Whether its mission is not admitted yet.", |robot| robot.waiting.is_some()),
         ("alarmed", "Whether it is not where it may be.", |robot| robot.alarm.is_some()),
         ("stopped", "Whether it has to stop for one that is not where it may be.", |robot| robot.stopped.is_some()),

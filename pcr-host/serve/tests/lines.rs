@@ -1,6 +1,7 @@
 //! The line protocol: the example of the document, the schema, and bytes that are no requests.
 
 use pcr_formats::splitmix64::SplitMix64;
+use pcr_serve::bridge_status::BridgeStatus;
 use pcr_serve::clients::Access;
 use pcr_serve::journal_entry::NullStore;
 use pcr_serve::journal_writer::WriteProgress;
@@ -9,7 +10,6 @@ use pcr_serve::log::{LogLevel, LogWriter};
 use pcr_serve::outbox::{BACKLOG, DisconnectReason, outbox};
 use pcr_serve::server::{ServerInput, SupervisorCall, queue, serve};
 use pcr_serve::supervisor::{Supervisor, SupervisorConfig};
-use pcr_serve::vda5050::bridge::BridgeStatus;
 use pcr_serve::{clients, http};
 use serde_json::{Value, json};
 use std::io::{BufRead, BufReader, Read, Write};

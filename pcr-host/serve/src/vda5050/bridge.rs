@@ -2,12 +2,12 @@
 //! or output itself.
 
 use super::vehicle_adapter::{OutboundMessage, Recipient, SendCondition, VehicleAdapter, VehicleConfig};
+use crate::bridge_status::BridgeCounters;
 use crate::event::SupervisorEvent;
 use crate::robot::SupervisedRobot;
 use crate::supervisor::{JournalError, Supervisor};
 use pcr_formats::vda5050::decode::MessageLimits;
 use pcr_formats::vda5050::topics::{TopicInterface, TopicKind, VehicleId};
-use serde::Serialize;
 use std::collections::{BTreeSet, HashMap};
 
 /// Settings of a bridge.
@@ -43,32 +43,6 @@ pub struct PendingPublish {
     pub due: SendCondition,
     /// Index of its lane.
     vehicle_index: usize,
-}
-
-/// Numbers of messages since the start.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
-pub struct BridgeCounters {
-    /// Number of messages read.
-    pub read: u64,
-    /// Number of messages refused.
-    pub refused: u64,
-    /// Number of messages of vehicles that are not in the fleet, or on other topics.
-    pub foreign: u64,
-    /// Number of messages sent.
-    pub sent: u64,
-}
-
-/// What a bridge and its connection say of themselves.
-#[derive(Clone, Debug, Default, PartialEq, Eq)]
-pub struct BridgeStatus {
-    /// Whether it is connected to the broker.
-    pub connected: bool,
-    /// Whether it is the active one at the broker.
-    pub active: bool,
-    /// Numbers of messages since the start.
-    pub counts: BridgeCounters,
-    /// Names of the vehicles that have not said where they stand, so that no vehicle is released anything.
-    pub unplaced: Vec<String>,
 }
 
 /// The state of a robot on which the messages to its vehicle depend: number of its path, hold, whether it is stopped.

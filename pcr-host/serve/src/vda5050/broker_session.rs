@@ -5,11 +5,12 @@
 //! retained message may be missing, or be that of another bridge, although a bridge is active. Therefore the active
 //! bridge then repeats its message, and a claim counts only if no other bridge has objected for a while.
 
-use super::bridge::{BridgeStatus, PendingPublish, Vda5050Bridge};
+use super::bridge::{PendingPublish, Vda5050Bridge};
 use super::inbox::{DroppedCounters, InboxReceiver, inbox};
 use super::leader_election::{LeaderState, claim};
 use super::mqtt::{BrokerAddress, LinkEvent, MqttLink, Publisher};
 use super::vehicle_adapter::SendCondition;
+use crate::bridge_status::BridgeStatus;
 use crate::event::SupervisorEvent;
 use crate::server::{AfterCommit, ServerHandle};
 use crate::setup_error::SetupError;
