@@ -580,7 +580,7 @@ fn what_would_be_wrong_is_said_before_the_start() {
         ("\"speed\"", "\"pace\"", "vehicles[0]: pace: unknown"),
         ("\"radius\":0.4,", "", "vehicles[0]: radius: a number is expected"),
     ] {
-        let changed = file("serve-check", "changed.json", &VEHICLES.replace(from, to));
+        let changed = file("serve-check", "changed.json", VEHICLES.replace(from, to));
         wrong(&["--fleet", &changed, "--broker", &open], reason);
     }
     let taken = std::net::TcpListener::bind("127.0.0.1:0").unwrap();
