@@ -6,6 +6,7 @@
 //! import     layouts, orders and plans in other formats         Format, Layout
 //! input      files and JSON Lines, errors with their places
 //! json       JSON with the place of every value                 Json
+//! missions   vehicles, missions, closures and breakdowns      FleetMissions
 //! once       JSON without repeated names                        Once
 //! output     files that are written completely or not at all
 //! paper      the embedded scenario and the paper's numbers
@@ -22,6 +23,7 @@ pub mod footprint;
 pub mod import;
 pub mod input;
 pub mod json;
+pub mod missions;
 pub mod output;
 pub mod paper_example;
 pub mod plane_geometry;

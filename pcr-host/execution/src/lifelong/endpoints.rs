@@ -41,6 +41,8 @@ pub(super) struct Endpoints {
     pub(super) safe: Vec<usize>,
     /// For each node whether it is a safe end.
     pub(super) is_safe: Vec<bool>,
+    /// Number of safe ends of the layout: a place counts once, in whatever layers it is one.
+    pub(super) capacity: usize,
     /// Queues of places to stand on dead ends, each with its dead end first.
     lanes: Vec<Vec<usize>>,
     /// `lane[node]` is (index in `lanes`, position in that queue) of a queue place.
@@ -50,13 +52,52 @@ pub(super) struct Endpoints {
 
 impl Endpoints {
     pub(super) fn of(site: &RouteGraph, seed: u64) -> Self {
-        let nodes = strongest(site);
+        if site.layers.len() > 1 {
+            return Self::of_layers(site, seed);
+        }
+        let nodes = strongest(site, 0);
         let dead = Some(dead_ends(site, &nodes)).filter(|ends| is_open(site, &nodes, ends));
         let found = [dead.unwrap_or_default(), drawn(site, &nodes, seed)];
         let safe = found.into_iter().max_by_key(Vec::len).unwrap_or_default();
         let mut is_safe = vec![false; site.points.len()];
         safe.iter().for_each(|&end| is_safe[end] = true);
-        Self { lane: vec![None; is_safe.len()], lanes: Vec::new(), harm: OnceCell::new(), nodes, safe, is_safe }
+        let (lane, capacity) = (vec![None; is_safe.len()], safe.len());
+        Self { lane, lanes: Vec::new(), harm: OnceCell::new(), nodes, safe, is_safe, capacity }
+    }
+
+    /// The ends of several types of vehicles: places where any of them may stand for good.
+    fn of_layers(site: &RouteGraph, seed: u64) -> Self {
+        let nodes: Vec<usize> = (0..site.layers.len()).flat_map(|layer| strongest(site, layer)).collect();
+        let mut groups: Vec<Vec<usize>> = vec![Vec::new(); site.places()];
+        nodes.iter().for_each(|&node| groups[node % site.places()].push(node));
+        let places: Vec<usize> = (0..groups.len()).filter(|&place| !groups[place].is_empty()).collect();
+        let mut random = SplitMix64(seed);
+        let mut best: Vec<usize> = Vec::new();
+        for _ in 0..draws(&nodes).max(1) {
+            let mut candidates = random.shuffled(&places);
+            candidates.sort_by_key(|&place| groups[place].iter().any(|&node| site.leaving[node].len() > 1));
+            let mut ends: Vec<usize> = Vec::new();
+            for place in candidates {
+                let touches = |&end: &usize| {
+                    let own = groups[place].iter();
+                    own.clone().any(|&node| groups[end].iter().any(|&other| site.collide(node, other)))
+                };
+                if !ends.iter().any(touches) {
+                    ends.push(place);
+                    if !are_open(site, &nodes, &groups, &ends) {
+                        ends.pop();
+                    }
+                }
+            }
+            if ends.len() > best.len() {
+                best = ends;
+            }
+        }
+        let safe: Vec<usize> = best.iter().flat_map(|&place| groups[place].iter().copied()).collect();
+        let mut is_safe = vec![false; site.points.len()];
+        safe.iter().for_each(|&end| is_safe[end] = true);
+        let (lane, capacity) = (vec![None; is_safe.len()], best.len());
+        Self { lane, lanes: Vec::new(), harm: OnceCell::new(), nodes, safe, is_safe, capacity }
     }
 
     /// With queues of places on dead ends, each with its dead end first.
@@ -127,11 +168,11 @@ impl Endpoints {
     }
 }
 
-/// The largest set of nodes that can all be reached from one another.
-fn strongest(site: &RouteGraph) -> Vec<usize> {
+/// The largest set of nodes of a layer that can all be reached from one another.
+fn strongest(site: &RouteGraph, layer: usize) -> Vec<usize> {
     let mut left: Vec<bool> = vec![true; site.points.len()];
     let mut best: Vec<usize> = Vec::new();
-    for &node in &site.nodes {
+    for &node in site.nodes.iter().filter(|&&node| site.layer_of(node) == layer) {
         if left[node] {
             let both = [false, true].map(|back| reached(site, node, back, |_| true));
             let mutual: Vec<usize> = site.nodes.iter().copied().filter(|&k| both[0][k] && both[1][k]).collect();
@@ -211,6 +252,39 @@ fn is_open(site: &RouteGraph, nodes: &[usize], ends: &[usize]) -> bool {
         })
 }
 
+/// The same of several types of vehicles: whoever stands at these places, all other nodes can be reached from one another in each layer, and
+/// so can each end while its robot is away. `groups` has the nodes of each place.
+fn are_open(site: &RouteGraph, nodes: &[usize], groups: &[Vec<usize>], ends: &[usize]) -> bool {
+    let mut blocked = vec![0_u16; site.atoms.len()];
+    let covers: Vec<Vec<usize>> = ends
+        .iter()
+        .map(|&end| {
+            let mut all: Vec<usize> = groups[end].iter().flat_map(|&node| site.covers(node).to_vec()).collect();
+            all.sort_unstable();
+            all.dedup();
+            all
+        })
+        .collect();
+    covers.iter().flatten().for_each(|&atom| blocked[atom] += 1);
+    let free = |node: usize| blocked[site.standing(node)] == 0;
+    (0..site.layers.len()).all(|layer| {
+        let mut own = nodes.iter().copied().filter(|&node| site.layer_of(node) == layer);
+        let Some(hub) = own.clone().find(|&node| free(node)) else { return own.next().is_none() };
+        let both = [false, true].map(|back| reached(site, hub, back, |atom| blocked[atom] == 0));
+        let is_end = |node: usize| ends.contains(&(node % site.places()));
+        own.all(|node| if free(node) { both.iter().all(|reached| reached[node]) } else { is_end(node) })
+            && ends.iter().zip(&covers).all(|(&end, covers)| {
+                let Some(&node) = groups[end].iter().find(|&&node| site.layer_of(node) == layer) else { return true };
+                let open = |atom: usize| {
+                    blocked[atom] == 0 || (blocked[atom] == 1 && covers.binary_search(&atom).is_ok())
+                };
+                let leaves = site.leaving[node].iter().any(|&atom| open(atom) && both[1][site.atoms[atom].ends[1]]);
+                let comes = site.coming[node].iter().any(|&atom| open(atom) && both[0][site.atoms[atom].ends[0]]);
+                leaves && comes
+            })
+    })
+}
+
 /// The part of a layout that remains usable while robots stand at some nodes.
 struct RemainingGraph {
     /// For each atom whether no standing robot blocks it.
@@ -230,14 +304,21 @@ impl RemainingGraph {
             site.covers(end).iter().for_each(|&atom| is_open[atom] = false);
         }
         let open = |atom: usize| is_open[atom];
-        let free: Vec<usize> = counted.iter().copied().filter(|&node| open(site.standing(node))).collect();
-        let parts = (0..HUBS.min(free.len())).map(|k| {
-            let hub = free[k * free.len() / HUBS.min(free.len())];
-            let [to, from] = [false, true].map(|back| reached(site, hub, back, open));
-            let is_inside: Vec<bool> = to.into_iter().zip(from).map(|(to, from)| to && from).collect();
-            (free.iter().filter(|&&node| is_inside[node]).count(), is_inside)
-        });
-        let (count, is_inside) = parts.max_by_key(|part| part.0).unwrap_or_else(|| (0, vec![false; site.points.len()]));
+        let (mut count, mut is_inside) = (0, vec![false; site.points.len()]);
+        for layer in 0..site.layers.len() {
+            let is_free = |node: &usize| site.layer_of(*node) == layer && open(site.standing(*node));
+            let free: Vec<usize> = counted.iter().copied().filter(is_free).collect();
+            let parts = (0..HUBS.min(free.len())).map(|k| {
+                let hub = free[k * free.len() / HUBS.min(free.len())];
+                let [to, from] = [false, true].map(|back| reached(site, hub, back, open));
+                let is_inside: Vec<bool> = to.into_iter().zip(from).map(|(to, from)| to && from).collect();
+                (free.iter().filter(|&&node| is_inside[node]).count(), is_inside)
+            });
+            if let Some((most, inside)) = parts.max_by_key(|part| part.0) {
+                count += most;
+                is_inside.iter_mut().zip(inside).for_each(|(all, own)| *all |= own);
+            }
+        }
         Self { is_open, is_inside, count }
     }
 }
@@ -357,7 +438,7 @@ mod tests {
             // A street for both directions, so that some bridge is none.
             imported.layout.edges[0].ways = [true; 2];
             let site = RouteGraph::new(&imported).expect("a site");
-            let nodes = strongest(&site);
+            let nodes = strongest(&site, 0);
             assert_eq!(nodes.len(), count * count + 6 * count * (count - 1));
             let mut is_inside = vec![false; site.points.len()];
             nodes.iter().for_each(|&node| is_inside[node] = true);

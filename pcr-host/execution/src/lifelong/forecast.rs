@@ -5,7 +5,6 @@
 //! shows that all can finish.
 
 use super::gates::TimedGate;
-use super::kinematic_limits::KinematicLimits;
 use super::region_table::RouteRegion;
 use super::region_waits::{FleetWaits, RegionWait, sort};
 use super::robot::{LifelongRobot, SHORT};
@@ -19,7 +18,6 @@ pub(super) struct ForecastInput<'t, 'w> {
     pub(super) robots: &'t [LifelongRobot],
     /// The waits of the fleet; those of the changed robot are ignored.
     pub(super) waits: &'t FleetWaits<'w>,
-    pub(super) abilities: &'t KinematicLimits,
     pub(super) time: f64,
     /// The changed robot: index, new way, place on it \[m\], time at which it sets off, and its new regions.
     pub(super) changed: Option<(usize, &'t Route, f64, f64, &'t [RouteRegion])>,
@@ -145,7 +143,7 @@ impl<'t, 'w: 't> ForecastInput<'t, 'w> {
             places[robot] = place as u32;
             let changed =
                 self.changed.filter(|changed| changed.0 == robot).map(|(_, way, at, departs, _)| (way, at, departs));
-            let start = self.robots[robot].progress(changed, self.time, self.abilities);
+            let start = self.robots[robot].progress(changed, self.time);
             taken.push(AdvancingRobot::new(
                 Timeline::new(start, self.time),
                 self.row(robot),
@@ -154,7 +152,6 @@ impl<'t, 'w: 't> ForecastInput<'t, 'w> {
         }
         let mut waiting: Vec<Vec<usize>> = vec![Vec::new(); robots.len()];
         let mut open: Vec<usize> = (0..robots.len()).collect();
-        let lost = self.abilities.stop();
         while let Some(place) = open.pop() {
             let before = taken[place].steps;
             while let Some((first, timed, is_left)) = taken[place].ahead() {
@@ -167,7 +164,10 @@ impl<'t, 'w: 't> ForecastInput<'t, 'w> {
                     }
                 };
                 match (opens, is_left) {
-                    (Some(opens), false) => taken[place].wait(opens, lost),
+                    (Some(opens), false) => {
+                        let lost = self.robots[robots[place]].abilities.stop();
+                        taken[place].wait(opens, lost);
+                    }
                     (opens, true) => taken[place].meet(opens),
                     (None, false) => {
                         waiting[places[first] as usize].push(place);

@@ -134,7 +134,7 @@ impl LifelongState {
     /// Whether a robot has no goal on its way and soon comes to the end of it.
     fn needs_way(&self, robot: usize) -> bool {
         let it = &self.robots[robot];
-        it.way.goals.is_empty() && it.way.length() - it.stop(&self.abilities) <= LOOK
+        it.way.goals.is_empty() && it.way.length() - it.stop() <= LOOK
     }
 
     /// The whole present way of a robot, from where it is.
@@ -152,7 +152,7 @@ impl LifelongState {
             let goal = self.missions[*robot].map(|mission| mission.goal);
             let is_there = atoms.last().is_some_and(|&last| Some(self.site.atoms[last].ends[1]) == goal);
             let goals = if is_there { vec![atoms.len()] } else { Vec::new() };
-            let way = Route::new(&self.site, kept.from, &atoms, &goals, &self.abilities);
+            let way = Route::new(&self.site, kept.from, &atoms, &goals, &robots[*robot].abilities);
             book.exchange(*robot, &robots[*robot].way, &way, Vec::new());
             robots[*robot].take(way, kept.before);
             robots[*robot].departs = now;
@@ -174,9 +174,8 @@ impl LifelongState {
                     book.add(regions);
                 }
                 let waits = &FleetWaits::of(&robots, &book);
-                let (abilities, earlier) = (&self.abilities, self.scene(now).earlier());
-                let trial =
-                    ForecastInput { robots: &robots, waits, abilities, time: now, changed: None, earlier, kept: None };
+                let earlier = self.scene(now).earlier();
+                let trial = ForecastInput { robots: &robots, waits, time: now, changed: None, earlier, kept: None };
                 trial.forecast().ok().map(|forecast| (book, forecast))
             })
             .map(|(book, forecast)| JointAdmission { robots, book, forecast, kept: kept_atoms })
@@ -186,7 +185,7 @@ impl LifelongState {
     fn first(&self, region: &RouteRegion, robots: &[LifelongRobot], by_time: bool) -> Option<usize> {
         let two = region.robots.map(|robot| &robots[robot]);
         let at = two.map(|it| it.at);
-        let stop = two.map(|it| it.stop(&self.abilities));
+        let stop = two.map(|it| it.stop());
         let lengths = two.map(|it| it.way.length());
         match [0, 1].map(|first| region.can_be_first(first, at, stop, lengths)) {
             [true, true] => {

@@ -172,7 +172,7 @@ impl RecordedMotion {
         let gaps: f64 = shapes.windows(2).map(gap).filter(|gap| *gap > NO_GAP).sum();
         let parts = cut(&shapes, since, length);
         let end = parts.last().map_or(begin.at, PlacedSegment::end);
-        let (path, radius) = (path(&parts, begin.at, length), site.shape.reach());
+        let (path, radius) = (path(&parts, begin.at, length), site.layers[0].shape.reach());
         let agent = RawAgent { id, radius, path, travel: Some(travel) };
         Ok((Self::Disc(agent), WindowStart { at: end, ..begin }, gaps))
     }
@@ -221,7 +221,7 @@ fn body(
     (trail, since): (&[usize], f64),
     begin: WindowStart,
 ) -> (RecordedMotion, WindowStart, f64) {
-    let (corners, radius) = site.shape.corners();
+    let (corners, radius) = site.layers[0].shape.corners();
     let (mut before, mut left, mut gaps, mut from) = (since, length, 0.0, 0.0);
     let mut segments: Vec<RawBodySegment> = Vec::new();
     let (mut direction, mut heading) = (begin.heading, begin.heading);

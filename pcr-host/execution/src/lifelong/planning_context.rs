@@ -3,7 +3,6 @@
 use super::CoordinationMethod;
 use super::endpoints::Endpoints;
 use super::forecast::{DeadlockedRobot, Forecast, ForecastInput};
-use super::kinematic_limits::KinematicLimits;
 use super::region_table::RegionTable;
 use super::region_waits::FleetWaits;
 use super::reservations::RouteReservations;
@@ -28,7 +27,6 @@ pub(super) struct PlanningContext<'s> {
     pub(super) robots: &'s [LifelongRobot],
     pub(super) book: &'s RegionTable,
     pub(super) locks: &'s RouteReservations,
-    pub(super) abilities: &'s KinematicLimits,
     pub(super) network: &'s RouteFinder,
     /// Nodes where robots may stand for good.
     pub(super) ends: &'s Endpoints,
@@ -50,10 +48,10 @@ pub(super) struct PlanningContext<'s> {
 impl PlanningContext<'_> {
     /// The forecast for all robots with their present ways and orders.
     pub(super) fn base(&self) -> Result<Forecast, Vec<DeadlockedRobot>> {
-        let PlanningContext { robots, abilities, time, .. } = *self;
+        let PlanningContext { robots, time, .. } = *self;
         let waits = &FleetWaits::of(robots, self.book);
         let earlier = self.earlier();
-        ForecastInput { robots, waits, abilities, time, changed: None, earlier, kept: None }.forecast()
+        ForecastInput { robots, waits, time, changed: None, earlier, kept: None }.forecast()
     }
 
     /// Weight of the goals of a way before the last one. A robot that knows two goals is not twice as important as one that knows one,
@@ -78,7 +76,7 @@ impl PlanningContext<'_> {
 
     pub(super) fn kept(&self, robot: usize) -> CommittedRoute {
         let it = &self.robots[robot];
-        it.way.committed_part(self.site, it.at, it.stop(self.abilities), it.turned)
+        it.way.committed_part(self.site, it.at, it.stop(), it.turned)
     }
 
     /// Whether no other robot stands for good where a robot at the node would touch it, and the node is on no route reserved

@@ -42,18 +42,18 @@ pub(super) struct PrecedenceSearch<'c, 'w> {
 
 impl PrecedenceSearch<'_, '_> {
     pub(super) fn forecast(&self, regions: &[RouteRegion], departs: f64) -> Result<Forecast, Vec<DeadlockedRobot>> {
-        let PlanningContext { robots, abilities, time, .. } = *self.scene;
+        let PlanningContext { robots, time, .. } = *self.scene;
         let changed = Some((self.robot, self.way, self.at, departs, regions));
         let kept = self.scene.timetable.map(|timetable| (timetable, self.taken));
         let earlier = self.scene.earlier();
-        ForecastInput { robots, waits: self.waits, abilities, time, changed, earlier, kept }.forecast()
+        ForecastInput { robots, waits: self.waits, time, changed, earlier, kept }.forecast()
     }
 
     /// Whether the robot, and whether the other one, can go first at a region.
     pub(super) fn sides(&self, region: &RouteRegion) -> [bool; 2] {
         let other = &self.scene.robots[region.robots[1]];
         let at = [self.at, other.at];
-        let stop = [self.stop, other.stop(self.scene.abilities)];
+        let stop = [self.stop, other.stop()];
         let lengths = [self.way.length(), other.way.length()];
         [0, 1].map(|first| region.can_be_first(first, at, stop, lengths))
     }

@@ -33,13 +33,13 @@ impl PlanningContext<'_> {
         };
         let holds: Vec<f64> = regions.iter().map(held).collect();
         let nearest = (0..regions.len()).min_by(|&a, &b| holds[a].total_cmp(&holds[b]))?;
-        if holds[nearest] > it.at + self.abilities.braking(self.abilities.speed) {
+        if holds[nearest] > it.at + it.abilities.braking(it.abilities.speed) {
             return None;
         }
         let (base, taken) = (&timetable.lines[..], &self.waiting_for(robot)[..]);
         let cost = base[robot].cost(&it.way, self.time, self.earlier());
         let budget = &Cell::new(FORECASTS);
-        let [at, stop] = [it.at, it.stop(self.abilities)];
+        let [at, stop] = [it.at, it.stop()];
         let case = PrecedenceSearch { scene: self, base, waits, taken, robot, way: &it.way, at, stop, budget };
         let mut open: Vec<bool> = regions.iter().map(|region| case.sides(region) == [true; 2]).collect();
         if !open[nearest] {

@@ -22,6 +22,7 @@ pub(super) struct RobotPhase {
 #[derive(Clone, Debug)]
 pub(super) struct LifelongRobot {
     pub(super) way: Route,
+    pub(super) abilities: KinematicLimits,
     /// Travelled length \[m\] and speed \[m/s\].
     pub(super) at: f64,
     pub(super) speed: f64,
@@ -45,9 +46,10 @@ pub(super) struct LifelongRobot {
 }
 
 impl LifelongRobot {
-    pub(super) fn new(way: Route) -> Self {
+    pub(super) fn new(way: Route, abilities: KinematicLimits) -> Self {
         Self {
             way,
+            abilities,
             at: 0.0,
             speed: 0.0,
             turned: 0,
@@ -63,8 +65,8 @@ impl LifelongRobot {
     }
 
     /// Length at which it can come to rest \[m\].
-    pub(super) fn stop(&self, abilities: &KinematicLimits) -> f64 {
-        if self.speed > 0.0 { (self.at + abilities.braking(self.speed)).min(self.way.length()) } else { self.at }
+    pub(super) fn stop(&self) -> f64 {
+        if self.speed > 0.0 { (self.at + self.abilities.braking(self.speed)).min(self.way.length()) } else { self.at }
     }
 
     /// Its next stop: a corner, the goal, or the end \[m\].
@@ -74,20 +76,21 @@ impl LifelongRobot {
     }
 
     /// Length beyond which a hold does not affect the next step \[m\].
-    pub(super) fn horizon(&self, abilities: &KinematicLimits, step: f64) -> f64 {
+    pub(super) fn horizon(&self, step: f64) -> f64 {
+        let abilities = &self.abilities;
         let speed = (self.speed + abilities.acceleration * step).min(abilities.speed);
         self.at + speed * step + abilities.braking(speed) + 2.0 * SHORT
     }
 
     /// Advances by a step, so that it can still stop before `hold`. Returns whether it has reached its goal.
-    pub(super) fn drive(&mut self, hold: f64, time: f64, step: f64, abilities: &KinematicLimits) -> bool {
+    pub(super) fn drive(&mut self, hold: f64, time: f64, step: f64) -> bool {
+        let abilities = &self.abilities;
         let next = self.next_stop();
         let waits = self.turning > time || self.departs > time;
         let left = if waits { 0.0 } else { next.min(hold - SHORT) - self.at };
         let stopped = self.stopped_until > time;
         let limit = self.way.speeds[self.way.atom(self.at.max(1e-12))].min(abilities.speed) * (1.0 - self.slip);
-        let phases =
-            pace(self.speed, if stopped { 0.0 } else { limit }, left, self.slower_ahead(abilities), step, abilities);
+        let phases = pace(self.speed, if stopped { 0.0 } else { limit }, left, self.slower_ahead(), step, abilities);
         let mut begin = time;
         let before = self.at;
         for (duration, to) in phases {
@@ -133,7 +136,8 @@ impl LifelongRobot {
 
     /// Time of its way at its place, if it goes on as soon as it can; or the time on another way, with its place there and the
     /// time at which it sets off \[s\].
-    pub(super) fn progress(&self, other: Option<(&Route, f64, f64)>, time: f64, abilities: &KinematicLimits) -> f64 {
+    pub(super) fn progress(&self, other: Option<(&Route, f64, f64)>, time: f64) -> f64 {
+        let abilities = &self.abilities;
         let corner = self.turned.checked_sub(1).and_then(|last| self.way.corners.get(last));
         let (there, departs) = match other {
             Some((way, at, departs)) if !std::ptr::eq(way, &raw const self.way) => (way.time(at), departs),
@@ -186,7 +190,8 @@ impl LifelongRobot {
     }
 
     /// Length of the next lower speed limit, and that speed.
-    fn slower_ahead(&self, abilities: &KinematicLimits) -> Option<(f64, f64)> {
+    fn slower_ahead(&self) -> Option<(f64, f64)> {
+        let abilities = &self.abilities;
         let k = self.way.atom(self.at.max(1e-12));
         let reach = self.at + 2.0 * abilities.braking(abilities.speed);
         let ahead = (k + 1..self.way.atoms.len()).take_while(|&next| self.way.offsets[next] <= reach);

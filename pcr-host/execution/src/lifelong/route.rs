@@ -66,7 +66,7 @@ impl Route {
                 let atom = &site.atoms[place];
                 let turn = heading.zip(atom.headings).map_or(0.0, |(last, next)| wrapped(next[0] - last));
                 let stops = before.len() > 1 && place != next || (turning.is_none() && goals.contains(&k));
-                if f64::abs(turn) > STRAIGHT && !site.has_outline() {
+                if f64::abs(turn) > STRAIGHT && !site.is_outline(atom.layer) {
                     corners.push(RouteCorner { at: length, turn: abilities.turn(turn) });
                     time += abilities.turn(turn);
                 }
@@ -219,7 +219,7 @@ impl Route {
 
 /// The corners of an atom that begins at a length \[m\], beyond a turn before it.
 fn within(site: &RouteGraph, atom: &RouteElement, length: f64, abilities: &KinematicLimits) -> Vec<RouteCorner> {
-    if !site.has_outline() {
+    if !site.is_outline(atom.layer) {
         let mut within = 0.0;
         let corner = |pair: &[pcr_formats::scenario::PlacedSegment]| {
             within += pair[0].shape.length();

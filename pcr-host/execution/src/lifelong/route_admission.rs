@@ -119,15 +119,13 @@ impl PlanningContext<'_> {
         }
         let it = &self.robots[robot];
         let waits = &FleetWaits::of(self.robots, self.book);
-        let [at, stop] = [it.at, it.stop(self.abilities)].map(|length| length - kept.before);
+        let [at, stop] = [it.at, it.stop()].map(|length| length - kept.before);
         // The orders of all robots were valid before, so they are without this robot.
-        let PlanningContext { robots, abilities, time, .. } = *self;
+        let PlanningContext { robots, time, .. } = *self;
         let alone = || {
             let changed = Some((robot, &it.way, it.at, time, &[][..]));
             let earlier = self.earlier();
-            ForecastInput { robots, waits, abilities, time, changed, earlier, kept: None }
-                .forecast()
-                .map(|found| found.lines)
+            ForecastInput { robots, waits, time, changed, earlier, kept: None }.forecast().map(|found| found.lines)
         };
         let [least, most] = FORECASTS;
         let (alone, taken, budget) = match self.timetable {
@@ -141,7 +139,7 @@ impl PlanningContext<'_> {
         let ways = candidates.into_iter().map(|(route, goals)| {
             let atoms: Vec<usize> = kept.atoms.iter().chain(&route).copied().collect();
             let goals: Vec<usize> = goals.iter().map(|goal| kept.atoms.len() + goal).collect();
-            Route::new(self.site, kept.from, &atoms, &goals, self.abilities)
+            Route::new(self.site, kept.from, &atoms, &goals, &self.robots[robot].abilities)
         });
         let mut tried: Vec<(Route, Vec<RouteRegion>)> = Vec::new();
         let mut found: Vec<RouteCandidate> = Vec::new();
@@ -213,7 +211,7 @@ impl PlanningContext<'_> {
         for (route, goals) in candidates {
             let atoms: Vec<usize> = kept.atoms.iter().chain(&route).copied().collect();
             let goals: Vec<usize> = goals.iter().map(|goal| kept.atoms.len() + goal).collect();
-            let way = Route::new(self.site, kept.from, &atoms, &goals, self.abilities);
+            let way = Route::new(self.site, kept.from, &atoms, &goals, &self.robots[robot].abilities);
             let stands = |other: usize| {
                 let end = self.robots[other].way.end();
                 other != robot && way.atoms.iter().any(|&atom| self.site.passes(atom, end))

@@ -46,7 +46,8 @@ struct SearchLabel {
 
 /// The times of a layout: for each atom, and for each corner.
 pub(super) struct RouteFinder {
-    abilities: KinematicLimits,
+    /// The abilities of the robots of each layer.
+    abilities: Vec<KinematicLimits>,
     /// Time of each atom \[s\].
     times: Vec<f64>,
     /// For each atom the atoms that can follow it, with the cost of the corner between them \[s\].
@@ -61,13 +62,15 @@ pub(super) struct RouteFinder {
 }
 
 impl RouteFinder {
-    pub(super) fn new(site: &RouteGraph, abilities: KinematicLimits) -> Self {
+    pub(super) fn new(site: &RouteGraph) -> Self {
+        let abilities: Vec<KinematicLimits> =
+            site.layers.iter().map(|layer| KinematicLimits::of(&layer.vehicle)).collect();
         let edges = site.edges;
         let (mut after, mut before) = (vec![Vec::new(); edges], vec![Vec::new(); edges]);
         for (atom, it) in site.atoms[..edges].iter().enumerate() {
             let last = it.headings.map(|headings| headings[1]);
             for &next in &site.leaving[it.ends[1]] {
-                let corner = corner(&abilities, last, site.atoms[next].headings);
+                let corner = corner(&abilities[it.layer], last, site.atoms[next].headings);
                 after[atom].push((next, corner));
                 before[next].push((atom, corner));
             }
@@ -123,7 +126,7 @@ impl RouteFinder {
         let left = self.remaining_times(site, goal);
         move |DeparturePose { node, heading }| {
             let over = |&atom: &usize| {
-                let corner = corner(&self.abilities, heading, site.atoms[atom].headings);
+                let corner = corner(&self.abilities[site.layer_of(node)], heading, site.atoms[atom].headings);
                 corner + self.times[atom] + f64::from(left[atom])
             };
             if node == goal { 0.0 } else { site.leaving[node].iter().map(over).fold(f64::INFINITY, f64::min) }
@@ -210,7 +213,13 @@ impl RouteFinder {
             }
         };
         for &atom in &site.leaving[from] {
-            relax(all, &mut heap, atom, None, corner(&self.abilities, heading, site.atoms[atom].headings));
+            relax(
+                all,
+                &mut heap,
+                atom,
+                None,
+                corner(&self.abilities[site.layer_of(from)], heading, site.atoms[atom].headings),
+            );
         }
         while routes.len() < count {
             let Some(OpenElement { cost, atom, .. }) = heap.pop() else { break };

@@ -3,6 +3,9 @@
 //!
 //! A disc stands where it turns. Any other outline sweeps an area: then a turn at a node is an element of its own, and
 //! so is each heading with which a robot stands there.
+//!
+//! A fleet of several types of vehicles has a layer for each type: all nodes and edges once more, for its body. Robots never change
+//! their layer; those of different layers touch as their bodies do.
 
 use super::gates::ElementContact;
 use super::kinematic_limits::KinematicLimits;
@@ -50,6 +53,27 @@ pub(super) struct RouteElement {
     bounds: [[f64; 2]; 2],
     /// Index of its edge in the layout; `None` for a node.
     pub(super) edge: Option<usize>,
+    /// Index of its layer.
+    pub(super) layer: usize,
+}
+
+/// A type of vehicles on a layout, and the edges of the layout that it may use.
+#[derive(Clone, Debug)]
+pub(super) struct VehicleLayer {
+    pub(super) vehicle: VehicleTraits,
+    /// Indices of edges in the layout that are forbidden to it.
+    pub(super) forbidden: Vec<usize>,
+}
+
+/// The bodies of the robots of a layer.
+#[derive(Clone, Debug)]
+pub(super) struct LayerBody {
+    /// The vehicle as the edges let it face.
+    pub(super) vehicle: VehicleTraits,
+    /// The robot, without margins.
+    pub(super) shape: ConvexBody,
+    /// The robot with margins and the error of curves.
+    body: ConvexBody,
 }
 
 /// The elements of an outline at a node.
@@ -67,7 +91,7 @@ impl NodeElements {
     }
 }
 
-/// A layout for robots of one size.
+/// A layout for robots of one type, or of several types.
 #[derive(Debug)]
 pub(super) struct RouteGraph {
     pub(super) points: Vec<[f64; 2]>,
@@ -89,10 +113,8 @@ pub(super) struct RouteGraph {
     touching_elements: Vec<Vec<usize>>,
     /// Bound on the error of curves, and on the distance of their ends from nodes \[m\].
     pub(super) position_error: f64,
-    /// The robot, without margins.
-    pub(super) shape: ConvexBody,
-    /// The robot with margins and the error of curves.
-    body: ConvexBody,
+    /// The bodies of each layer.
+    pub(super) layers: Vec<LayerBody>,
     /// The contact of each pair of `near`, at the same indices, computed when it is first needed.
     contacts: Vec<Vec<OnceCell<Option<Box<ElementContact>>>>>,
     covers: RefCell<HashMap<usize, Rc<[usize]>>>,
@@ -113,27 +135,43 @@ impl RouteGraph {
     /// An edge that is not a path.
     pub(super) fn new(imported: &ImportedLayout) -> Result<Self, String> {
         let ImportedLayout { layout, vehicle } = imported;
+        Self::layered(layout, &[VehicleLayer { vehicle: vehicle.clone(), forbidden: Vec::new() }])
+    }
+
+    /// The site with a layer for each type of vehicles.
+    ///
+    /// # Errors
+    /// An edge that is not a path.
+    pub(super) fn layered(layout: &Layout, layers: &[VehicleLayer]) -> Result<Self, String> {
         let level = layout.largest_level();
-        let points: Vec<[f64; 2]> = layout.nodes.iter().map(|node| node.point).collect();
-        let nodes: Vec<usize> = (0..points.len()).filter(|&node| layout.nodes[node].level == level).collect();
-        let steps = || {
-            let open = layout.edges.iter().enumerate().filter(|(_, edge)| !edge.closed);
-            let steps = open.flat_map(|(place, edge)| edge.steps().map(move |step| (place, step)));
-            steps.filter(|(_, step)| {
-                [step.origin(), step.target()].iter().all(|&node| layout.nodes[node].level == level)
-            })
-        };
-        let (vehicle, is_known) = faced(vehicle, steps().map(|(_, step)| step.facing()));
-        let shape = ConvexBody::of_vehicle(vehicle.footprint.as_ref(), vehicle.radius);
-        let shape = shape.map_err(|invalid| format!("the outline of the vehicle: {invalid}"))?;
-        let maker = ElementMaker { layout, vehicle: &vehicle, has_outline: !shape.is_disc(), is_known };
+        let count = layout.nodes.len();
+        let points: Vec<[f64; 2]> = layers.iter().flat_map(|_| layout.nodes.iter().map(|node| node.point)).collect();
+        let nodes: Vec<usize> = (0..points.len()).filter(|&node| layout.nodes[node % count].level == level).collect();
         let mut atoms = Vec::new();
         let mut off = 0.0_f64;
-        for (place, step) in steps() {
-            let atom = maker.along(step, place);
-            let atom = atom.map_err(|invalid| format!("edge {}: {invalid}", layout.edges[place].id))?;
-            off = off.max(step.deviation() + vehicle.moved_by(step.turned()) + atom.gap(&points));
-            atoms.push(atom);
+        let mut makers = Vec::new();
+        for (layer, VehicleLayer { vehicle, forbidden }) in layers.iter().enumerate() {
+            let open = layout.edges.iter().enumerate();
+            let open = open.filter(|(place, edge)| !edge.closed && !forbidden.contains(place));
+            let steps = open.flat_map(|(place, edge)| edge.steps().map(move |step| (place, step)));
+            let steps: Vec<(usize, RouteStep<'_>)> = steps
+                .filter(|(_, step)| {
+                    [step.origin(), step.target()].iter().all(|&node| layout.nodes[node].level == level)
+                })
+                .collect();
+            let (vehicle, is_known) = faced(vehicle, steps.iter().map(|(_, step)| step.facing()));
+            let shape = ConvexBody::of_vehicle(vehicle.footprint.as_ref(), vehicle.radius);
+            let shape = shape.map_err(|invalid| format!("the outline of the vehicle: {invalid}"))?;
+            let maker = ElementMaker { layout, vehicle, shape, layer, is_known };
+            for (place, step) in steps {
+                let mut atom = maker
+                    .along(step, place)
+                    .map_err(|invalid| format!("edge {}: {invalid}", layout.edges[place].id))?;
+                off = off.max(step.deviation() + maker.vehicle.moved_by(step.turned()) + atom.gap(&points));
+                atom.ends = atom.ends.map(|node| layer * count + node);
+                atoms.push(atom);
+            }
+            makers.push(maker);
         }
         let edges = atoms.len();
         let (mut leaving, mut coming) = (vec![Vec::new(); points.len()], vec![Vec::new(); points.len()]);
@@ -141,14 +179,19 @@ impl RouteGraph {
             leaving[atom.ends[0]].push(place);
             coming[atom.ends[1]].push(place);
         }
-        let at_nodes = maker.at_nodes(&mut atoms, &points, [&coming, &leaving]);
+        let at_nodes = at_nodes(&makers, &mut atoms, &points, [&coming, &leaving]);
         let at_nodes = at_nodes.map_err(|invalid| format!("a node: {invalid}"))?;
         let gaps = atoms.iter().map(|atom| atom.gap(&points)).fold(0.0, f64::max);
-        // Where the heading changes by less than a corner, nobody turns.
-        let straight = if shape.is_disc() { 0.0 } else { 2.0 * STRAIGHT * shape.reach() };
-        let larger = vehicle.margin + off + GAPS * gaps + 0.5 * ROOM + straight;
-        let body = shape.inflated(larger).map_err(|invalid| invalid.to_string())?;
-        let near = neighbours(&atoms, 2.0 * body.reach());
+        let layers = makers.into_iter().map(|ElementMaker { vehicle, shape, .. }| {
+            // Where the heading changes by less than a corner, nobody turns.
+            let straight = if shape.is_disc() { 0.0 } else { 2.0 * STRAIGHT * shape.reach() };
+            let larger = vehicle.margin + off + GAPS * gaps + 0.5 * ROOM + straight;
+            let body = shape.inflated(larger).map_err(|invalid| invalid.to_string())?;
+            Ok(LayerBody { vehicle, shape, body })
+        });
+        let layers: Vec<LayerBody> = layers.collect::<Result<_, String>>()?;
+        let reach = layers.iter().map(|layer| layer.body.reach()).fold(0.0, f64::max);
+        let near = neighbours(&atoms, 2.0 * reach);
         let back = |(place, atom): (usize, &RouteElement)| {
             let [a, b] = atom.ends;
             let is_line = |atom: &RouteElement| matches!(&atom.shapes[..], [one] if matches!(one.shape, PathSegment::Line { .. }));
@@ -173,19 +216,44 @@ impl RouteGraph {
             at_nodes,
             touching_elements: near,
             position_error: off,
-            shape,
-            body,
+            layers,
             contacts,
             covers,
         };
-        let motions = site.atoms.iter().try_for_each(|atom| atom.motion(&site.body).map(drop));
+        let motions = site.atoms.iter().try_for_each(|atom| atom.motion(site.body_of(atom)).map(drop));
         motions.map_err(|invalid| invalid.to_string())?;
         Ok(site)
     }
 
-    /// Whether turns are elements of their own.
+    /// Whether any robots have outlines, whose turns are elements of their own.
     pub(super) fn has_outline(&self) -> bool {
-        !self.body.is_disc()
+        self.layers.iter().any(|layer| !layer.body.is_disc())
+    }
+
+    /// Whether the robots of a layer have outlines.
+    pub(super) fn is_outline(&self, layer: usize) -> bool {
+        !self.layers[layer].body.is_disc()
+    }
+
+    /// Number of nodes of the layout, each of which is in all layers.
+    pub(super) fn places(&self) -> usize {
+        self.points.len() / self.layers.len()
+    }
+
+    /// Layer of a node.
+    pub(super) fn layer_of(&self, node: usize) -> usize {
+        node / self.places()
+    }
+
+    fn body_of(&self, atom: &RouteElement) -> &ConvexBody {
+        &self.layers[atom.layer].body
+    }
+
+    /// The elements of a robot that stands at a node, with each heading.
+    fn standing_at(&self, node: usize) -> impl Iterator<Item = usize> {
+        let poses = &self.at_nodes[node].poses;
+        let disc = poses.is_empty().then(|| self.standing(node));
+        poses.iter().map(|pose| pose.1).chain(disc)
     }
 
     /// The node of an atom on which a robot stands with the first heading of that node.
@@ -222,18 +290,19 @@ impl RouteGraph {
     pub(super) fn collide(&self, a: usize, b: usize) -> bool {
         if self.has_outline() {
             let stand = |a: usize, b: usize| {
-                let poses = self.at_nodes[a].poses.iter();
-                a == b || poses.clone().any(|pose| self.at_nodes[b].all().any(|other| self.touch(pose.1, other)))
+                let others = || self.standing_at(b).chain(self.at_nodes[b].all());
+                a == b || self.standing_at(a).any(|pose| others().any(|other| self.touch(pose, other)))
             };
             return stand(a, b) || stand(b, a);
         }
+        let reach = [a, b].map(|node| self.layers[self.layer_of(node)].body.reach());
         let (a, b) = (self.points[a], self.points[b]);
-        (a[0] - b[0]).hypot(a[1] - b[1]) < self.width()
+        (a[0] - b[0]).hypot(a[1] - b[1]) < reach[0] + reach[1]
     }
 
-    /// Distance at which two robots do not touch while they stand and turn \[m\].
+    /// Distance at which two robots do not touch while they stand and turn, the largest of all \[m\].
     pub(super) fn width(&self) -> f64 {
-        2.0 * self.body.reach()
+        2.0 * self.layers.iter().map(|layer| layer.body.reach()).fold(0.0, f64::max)
     }
 
     /// The atoms that touch an atom, with their contacts.
@@ -250,8 +319,10 @@ impl RouteGraph {
     fn contact_at(&self, atom: usize, place: usize) -> Option<&ElementContact> {
         let found = self.contacts[atom][place].get_or_init(|| {
             let pair = [atom, self.touching_elements[atom][place]];
-            let motions = pair.map(|atom| self.atoms[atom].motion(&self.body).expect("checked by the constructor"));
-            ElementContact::compute(motions, PITCH * self.body.reach()).map(Box::new)
+            let bodies = pair.map(|atom| self.body_of(&self.atoms[atom]));
+            let motion = |side: usize| self.atoms[pair[side]].motion(bodies[side]).expect("checked by the constructor");
+            let pitch = PITCH * f64::max(bodies[0].reach(), bodies[1].reach());
+            ElementContact::compute([motion(0), motion(1)], pitch).map(Box::new)
         });
         found.as_deref()
     }
@@ -268,7 +339,7 @@ impl RouteGraph {
         }
         let near = |atom: usize| self.touching_elements[atom].iter().copied();
         let found: Rc<[usize]> = if self.has_outline() {
-            let mut all: Vec<usize> = self.at_nodes[node].poses.iter().flat_map(|pose| near(pose.1)).collect();
+            let mut all: Vec<usize> = self.standing_at(node).flat_map(near).collect();
             all.sort_unstable();
             all.dedup();
             let is_covered = |atom: &usize| match self.node_of(*atom) {
@@ -285,14 +356,7 @@ impl RouteGraph {
 
     /// Whether a robot somewhere on an atom would touch one that stands at a node.
     pub(super) fn passes(&self, atom: usize, node: usize) -> bool {
-        self.atoms[atom].ends.contains(&node) || {
-            let poses = &self.at_nodes[node].poses;
-            if poses.is_empty() {
-                self.touch(atom, self.standing(node))
-            } else {
-                poses.iter().any(|pose| self.touch(atom, pose.1))
-            }
-        }
+        self.atoms[atom].ends.contains(&node) || self.standing_at(node).any(|pose| self.touch(atom, pose))
     }
 }
 
@@ -310,26 +374,31 @@ fn faced(vehicle: &VehicleTraits, facings: impl Iterator<Item = Facing>) -> (Veh
 /// Makes the elements of a layout.
 struct ElementMaker<'l> {
     layout: &'l Layout,
-    vehicle: &'l VehicleTraits,
-    /// Whether turns are elements, and the robot is no disc.
-    has_outline: bool,
+    vehicle: VehicleTraits,
+    shape: ConvexBody,
+    layer: usize,
     /// Whether a robot that drives backward faces so; otherwise all face along their ways.
     is_known: bool,
 }
 
 impl ElementMaker<'_> {
+    /// Whether turns are elements, and the robot is no disc.
+    fn has_outline(&self) -> bool {
+        !self.shape.is_disc()
+    }
+
     fn along(&self, step: RouteStep<'_>, edge: usize) -> Result<RouteElement, InvalidInput> {
         let mut shapes = step.curve();
         shapes.retain(|placed| placed.shape.length() > 0.0);
         let from = self.layout.nodes[step.origin()].point;
         let speed = step.steady(self.vehicle.speed);
-        let facing = if self.has_outline && self.is_known && step.facing() == Facing::Backward { PI } else { 0.0 };
-        let abilities = KinematicLimits::of(self.vehicle);
+        let facing = if self.has_outline() && self.is_known && step.facing() == Facing::Backward { PI } else { 0.0 };
+        let abilities = KinematicLimits::of(&self.vehicle);
         // With this lever the turn takes as long at the speed of the edge as it would by itself.
         let lever = |turn: f64| {
             if turn.abs() > STRAIGHT { speed * abilities.turn(turn) / turn.abs() } else { LEVER }
         };
-        let segments = path(&shapes, (from, 0.0), facing, self.has_outline.then_some(&lever))?;
+        let segments = path(&shapes, (from, 0.0), facing, self.has_outline().then_some(&lever))?;
         let ends = shapes.first().zip(shapes.last());
         let headings = ends.map(|(first, last)| [first.heading, last.heading_at_end()].map(|heading| heading + facing));
         RouteElement {
@@ -340,63 +409,71 @@ impl ElementMaker<'_> {
             shapes,
             facing,
             edge: Some(edge),
+            layer: self.layer,
             ..RouteElement::default()
         }
         .with(segments)
     }
+}
 
-    /// Adds a robot that stands at each node, and for outlines all headings with which one can stand there, and all turns.
-    fn at_nodes(
-        &self,
-        atoms: &mut Vec<RouteElement>,
-        points: &[[f64; 2]],
-        [coming, leaving]: [&[Vec<usize>]; 2],
-    ) -> Result<Vec<NodeElements>, InvalidInput> {
-        let mut all = vec![NodeElements::default(); points.len()];
-        if !self.has_outline {
-            for (node, &at) in points.iter().enumerate() {
-                atoms.push(RouteElement::standing(node, at, None)?);
-            }
-            return Ok(all);
+/// Adds a robot that stands at each node, and for outlines all headings with which one can stand there, and all turns.
+fn at_nodes(
+    makers: &[ElementMaker<'_>],
+    atoms: &mut Vec<RouteElement>,
+    points: &[[f64; 2]],
+    [coming, leaving]: [&[Vec<usize>]; 2],
+) -> Result<Vec<NodeElements>, InvalidInput> {
+    let mut all = vec![NodeElements::default(); points.len()];
+    let maker = |node: usize| &makers[node * makers.len() / points.len()];
+    let ends = |of: &[usize], end: usize| {
+        let headings = of.iter().filter_map(|&atom| atoms[atom].headings);
+        different(headings.map(|headings| headings[end]))
+    };
+    let headings: Vec<[Vec<f64>; 2]> =
+        coming.iter().zip(leaving).map(|(coming, leaving)| [ends(coming, 1), ends(leaving, 0)]).collect();
+    // Robots begin with the first heading with which one can arrive, or else leave.
+    let poses: Vec<Vec<f64>> = headings
+        .iter()
+        .enumerate()
+        .map(|(node, [arrive, leave])| match (&arrive[..], &leave[..]) {
+            _ if !maker(node).has_outline() => Vec::new(),
+            ([], []) => vec![0.0],
+            ([], [first, ..]) => vec![*first],
+            _ => arrive.clone(),
+        })
+        .collect();
+    let standing = |node: usize, heading: Option<f64>| {
+        let element = RouteElement::standing(node, points[node], heading)?;
+        Ok::<_, InvalidInput>(RouteElement { layer: maker(node).layer, ..element })
+    };
+    for (node, list) in poses.iter().enumerate() {
+        list.first().into_iter().for_each(|&heading| all[node].poses.push((heading, atoms.len())));
+        atoms.push(standing(node, list.first().copied())?);
+    }
+    for (node, list) in poses.iter().enumerate() {
+        for &heading in list.iter().skip(1) {
+            all[node].poses.push((heading, atoms.len()));
+            atoms.push(standing(node, Some(heading))?);
         }
-        let ends = |of: &[usize], end: usize| {
-            let headings = of.iter().filter_map(|&atom| atoms[atom].headings);
-            different(headings.map(|headings| headings[end]))
-        };
-        let headings: Vec<[Vec<f64>; 2]> =
-            coming.iter().zip(leaving).map(|(coming, leaving)| [ends(coming, 1), ends(leaving, 0)]).collect();
-        // Robots begin with the first heading with which one can arrive, or else leave.
-        let poses: Vec<Vec<f64>> = headings
-            .iter()
-            .map(|[arrive, leave]| match (&arrive[..], &leave[..]) {
-                ([], []) => vec![0.0],
-                ([], [first, ..]) => vec![*first],
-                _ => arrive.clone(),
-            })
-            .collect();
-        let further = |list: &Vec<f64>| list.iter().copied().skip(1).collect::<Vec<f64>>();
-        let firsts = poses.iter().map(|list| vec![list[0]]).enumerate();
-        for (node, list) in firsts.chain(poses.iter().map(further).enumerate()) {
-            for heading in list {
-                all[node].poses.push((heading, atoms.len()));
-                atoms.push(RouteElement::standing(node, points[node], Some(heading))?);
-            }
+    }
+    for (node, [arrive, leave]) in headings.iter().enumerate() {
+        if !maker(node).has_outline() {
+            continue;
         }
-        let abilities = KinematicLimits::of(self.vehicle);
-        for (node, [arrive, leave]) in headings.iter().enumerate() {
-            // One that has turned may be sent another way.
-            for from in different(poses[node].iter().chain(arrive).chain(leave).copied()) {
-                for &to in leave {
-                    let turn = wrapped(to - from);
-                    if turn.abs() > STRAIGHT {
-                        all[node].turns.push(([from, to], atoms.len()));
-                        atoms.push(RouteElement::turning(node, points[node], from, turn, abilities.turn(turn))?);
-                    }
+        let abilities = KinematicLimits::of(&maker(node).vehicle);
+        // One that has turned may be sent another way.
+        for from in different(poses[node].iter().chain(arrive).chain(leave).copied()) {
+            for &to in leave {
+                let turn = wrapped(to - from);
+                if turn.abs() > STRAIGHT {
+                    all[node].turns.push(([from, to], atoms.len()));
+                    let element = RouteElement::turning(node, points[node], from, turn, abilities.turn(turn))?;
+                    atoms.push(RouteElement { layer: maker(node).layer, ..element });
                 }
             }
         }
-        Ok(all)
     }
+    Ok(all)
 }
 
 /// The headings without those that are nearly the same as one before \[rad\].
@@ -423,6 +500,7 @@ impl Default for RouteElement {
             phases: Vec::new(),
             bounds: [[0.0; 2]; 2],
             edge: None,
+            layer: 0,
         }
     }
 }
@@ -694,9 +772,9 @@ mod tests {
         // Where it is not known which way they face, the hull of both ways counts.
         imported.layout.edges[0].facing = [Facing::Either; 2];
         let either = RouteGraph::new(&imported).expect("a site");
-        let (corners, _) = either.shape.corners();
-        assert!(corners.iter().all(|&[x, _]| (x.abs() - 0.9).abs() < 1e-12) && !either.body.is_disc());
+        let (corners, _) = either.layers[0].shape.corners();
+        assert!(corners.iter().all(|&[x, _]| (x.abs() - 0.9).abs() < 1e-12) && either.is_outline(0));
         imported.layout.edges[0].facing = [Facing::Any; 2];
-        assert!(RouteGraph::new(&imported).expect("a site").body.is_disc());
+        assert!(!RouteGraph::new(&imported).expect("a site").is_outline(0));
     }
 }

@@ -110,7 +110,7 @@ fn driven(mut run: LifelongState, request: LifelongOptions, told: &dyn Fn(f64)) 
 impl LifelongState {
     /// Advances all robots by a step.
     fn step(&mut self, tick: usize, now: f64, open: bool) {
-        let fars: Vec<f64> = self.robots.iter().map(|it| it.horizon(&self.abilities, STEP)).collect();
+        let fars: Vec<f64> = self.robots.iter().map(|it| it.horizon(STEP)).collect();
         if self.request.method == CoordinationMethod::EdgeLocks {
             self.locks.give(&self.site, &self.robots, |robot| fars[robot]);
         }
@@ -121,7 +121,7 @@ impl LifelongState {
         let holds: Vec<f64> = (0..self.robots.len()).map(hold).collect();
         for (robot, hold) in holds.into_iter().enumerate() {
             let it = &mut self.robots[robot];
-            let stop = it.stop(&self.abilities);
+            let stop = it.stop();
             self.outcome.authority_overruns += usize::from(stop > hold + 1e-9 && stop > it.at);
             disturb(it, robot, tick, now, open, &self.request);
             if open {
@@ -130,7 +130,7 @@ impl LifelongState {
                 *share(&mut self.outcome.time, &self.site, it, held.then_some(hold), now) += 1.0;
             }
             let before = it.at;
-            let has_come = it.drive(hold, now, STEP, &self.abilities);
+            let has_come = it.drive(hold, now, STEP);
             if self.tasks.is_some() {
                 self.passed(robot, before, now + STEP);
             } else if has_come {

@@ -50,7 +50,6 @@ pub(super) struct LifelongState {
     /// Reserved routes as (robot, route), where no other robot may come to stand: first that of the mission that has waited
     /// longest, then those of robots in its way.
     pub(super) reserved: Vec<(usize, Vec<usize>)>,
-    pub(super) abilities: KinematicLimits,
     pub(super) network: RouteFinder,
     pub(super) request: LifelongOptions,
     pub(super) robots: Vec<LifelongRobot>,
@@ -102,7 +101,7 @@ impl LifelongState {
             ends = ends.queued(&site, lanes);
         }
         let abilities = KinematicLimits::of(&imported.vehicle);
-        let network = RouteFinder::new(&site, abilities);
+        let network = RouteFinder::new(&site);
         // Not in unoptimized tests, because it takes long there.
         if !cfg!(debug_assertions) {
             site.warm();
@@ -115,7 +114,7 @@ impl LifelongState {
             return Err("the layout has no two nodes that can be reached from one another".into());
         }
         let robots: Vec<LifelongRobot> =
-            starts.iter().map(|&node| LifelongRobot::new(Route::standing(&site, node))).collect();
+            starts.iter().map(|&node| LifelongRobot::new(Route::standing(&site, node), abilities)).collect();
         let mut parked = vec![0; site.atoms.len()];
         starts.iter().for_each(|&node| site.covers(node).iter().for_each(|&atom| parked[atom] += 1));
         let count = robots.len();
@@ -149,7 +148,6 @@ impl LifelongState {
             reserved: Vec::new(),
             site,
             ends,
-            abilities,
             request,
             robots,
             parked,
@@ -191,7 +189,7 @@ impl LifelongState {
             let begin = Instant::now();
             let way = self.network.quickest(&self.site, from, |_| 0.0, |node| node == goal, Some(goal), 1);
             let alone = way.first().map_or(0.0, |atoms| {
-                Route::new(&self.site, from, atoms, &[], &self.abilities).unimpeded_time(&self.abilities)
+                Route::new(&self.site, from, atoms, &[], &it.abilities).unimpeded_time(&it.abilities)
             });
             let admitted = !it.way.goals.is_empty();
             let prepared = begin.elapsed();
@@ -219,7 +217,6 @@ impl LifelongState {
             robots: &self.robots,
             book: &self.book,
             locks: &self.locks,
-            abilities: &self.abilities,
             network: &self.network,
             ends: &self.ends,
             crowded: self.crowded,

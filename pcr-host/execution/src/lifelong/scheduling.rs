@@ -101,7 +101,7 @@ impl LifelongState {
             };
             let it = &self.robots[robot];
             let [goal] = it.way.goals[..] else { continue };
-            if *tries >= TRIES || it.way.time(goal) - it.progress(None, now, &self.abilities) > ahead {
+            if *tries >= TRIES || it.way.time(goal) - it.progress(None, now) > ahead {
                 continue;
             }
             *tries += 1;
@@ -159,14 +159,14 @@ impl LifelongState {
             return;
         }
         let earlier = self.scene(now).earlier();
-        let Self { robots, abilities, book, timetable, .. } = self;
+        let Self { robots, book, timetable, .. } = self;
         let waits = &FleetWaits::of(robots, book);
         for robot in (tick % ROUND..robots.len()).step_by(ROUND) {
             if robots[robot].has_arrived() {
                 continue;
             }
             let kept = Some((&*timetable, &[robot][..]));
-            let trial = ForecastInput { robots, waits, abilities, time: now, changed: None, earlier, kept };
+            let trial = ForecastInput { robots, waits, time: now, changed: None, earlier, kept };
             if let Ok(forecast) = trial.forecast() {
                 let lines = forecast.robots.into_iter().zip(forecast.lines).collect();
                 timetable.change(lines);

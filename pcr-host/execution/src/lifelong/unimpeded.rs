@@ -17,8 +17,8 @@ impl LifelongState {
 
     /// The missions of one robot.
     fn alone_with(&self, number: usize, begin: f64) -> usize {
-        let Self { abilities, request, .. } = self;
-        let mut robot = LifelongRobot::new(self.robots[number].way.clone());
+        let request = &self.request;
+        let mut robot = LifelongRobot::new(self.robots[number].way.clone(), self.robots[number].abilities);
         let (mut given, mut done) = (0, 0);
         let steps = (request.duration / STEP) as usize;
         for tick in 0..steps {
@@ -29,7 +29,7 @@ impl LifelongState {
                 robot.take(way, before);
             }
             disturb(&mut robot, number, tick, now, true, request);
-            if robot.drive(f64::INFINITY, now, STEP, abilities) && now + STEP > begin {
+            if robot.drive(f64::INFINITY, now, STEP) && now + STEP > begin {
                 done += 1;
             }
             robot.done.clear();
@@ -39,8 +39,8 @@ impl LifelongState {
 
     /// The quickest way of a robot to its next goals, and the length that is cut off from the way before \[m\].
     fn onward(&self, robot: &LifelongRobot, number: usize, given: u64) -> Option<(Route, f64)> {
-        let Self { site, ends, abilities, network, request, .. } = self;
-        let kept = robot.way.committed_part(site, robot.at, robot.stop(abilities), robot.turned);
+        let Self { site, ends, network, request, .. } = self;
+        let kept = robot.way.committed_part(site, robot.at, robot.stop(), robot.turned);
         let (mut atoms, mut goals, mut from) = (kept.atoms.clone(), Vec::new(), kept.end_pose);
         for next in given..given + GOALS {
             let goal = random_draws::goal(site, ends, request.seed, number, next, from.node);
@@ -50,6 +50,6 @@ impl LifelongState {
             atoms.extend(part);
             goals.push(atoms.len());
         }
-        Some((Route::new(site, kept.from, &atoms, &goals, abilities), kept.before))
+        Some((Route::new(site, kept.from, &atoms, &goals, &robot.abilities), kept.before))
     }
 }
