@@ -275,6 +275,12 @@ impl CliError {
         Self::Error(error.in_file(&name), WRONG_INPUT)
     }
 
+    /// Something wrong in a file of missions, at its line and column.
+    fn at(file: &Path, error: &pcr_formats::missions::MissionFileError) -> Self {
+        let name = if file == Path::new("-") { "standard input".into() } else { file.to_string_lossy() };
+        Self::Error(format!("{name}:{error}"), WRONG_INPUT)
+    }
+
     /// A file or directory that could not be written.
     fn not_written(output: &Path, error: &io::Error) -> Self {
         if let Some(kept) = OverwriteError::from_io_error(error) {

@@ -2,12 +2,14 @@
 //!
 //! ```text
 //! traffic     random missions on a layout, and their plan          Traffic
+//! missions    missions of a file, and what became of them        MissionsReport
 //! lifelong    robots that get a new mission after each one         run, Outcome
 //! simulate    plans in closed loop, with noise and delays          run, Task
 //! report      their results as JSON, CSV and tables
 //! ```
 
 pub mod lifelong;
+pub mod missions;
 pub mod report;
 pub mod simulate;
 pub mod traffic;

@@ -37,6 +37,9 @@
 //! joint      robots that move up together
 //! record     motions of the robots, for the independent checker   Certificate
 //! outcome    results of a run                                     Outcome
+//! own_missions  missions of a file: who does them, and where they are
+//! own_run    a run of such missions                               MissionRun
+//! trajectory what a robot did, as an agent of a scenario
 //! draws      random goals, delays and starts
 //! streets    a generated site of any size                         streets
 //! state      the fleet, its missions, and results so far
@@ -56,6 +59,8 @@ mod kinematic_limits;
 mod lifelong_report;
 mod motion_record;
 mod outcome;
+mod own_missions;
+mod own_run;
 mod parking_spots;
 mod planning_context;
 mod precedence_search;
@@ -77,6 +82,7 @@ mod streets;
 mod task_assignment;
 mod tasks;
 mod timetable;
+mod trajectory;
 mod unblocking;
 mod unimpeded;
 
@@ -84,6 +90,7 @@ pub use endpoints::WellFormedness;
 pub use lifelong_report::{LifelongReport, LifelongRunEntry};
 pub use motion_record::RunCertificate;
 pub use outcome::{LifelongResult, MeasuredLifelongRun, TimeShares};
+pub use own_run::{MissionResult, MissionRun, MissionWait, run_missions};
 pub use run::{run, run_tasks, watched};
 pub use streets::{aisles, streets};
 pub use tasks::TaskStream;

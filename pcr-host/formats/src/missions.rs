@@ -7,7 +7,7 @@
 mod records;
 
 use crate::footprint::Footprint;
-use crate::import::{Layout, VehicleTraits};
+use crate::import::{Layout, SizeSource, VehicleTraits};
 use crate::json::Position;
 use records::Record;
 use std::fmt;
@@ -228,6 +228,9 @@ impl FleetMissions {
         if given.iter().filter(|&&is_given| is_given).count() > 1 {
             let problem = "there is a radius, a length and a width, or a footprint; give one of them";
             return Err(MissionFileError { position: record.position, problem: problem.into() });
+        }
+        if given.contains(&true) {
+            traits.size = SizeSource::File;
         }
         if let Some(radius) = radius {
             (traits.radius, traits.footprint) = (radius, None);

@@ -22,7 +22,7 @@ pub(crate) type ArgumentRule =
     (&'static str, &'static [&'static str], ArgumentRelation, &'static [&'static str], &'static str);
 
 /// All of them.
-pub(crate) const RULES: [ArgumentRule; 32] = [
+pub(crate) const RULES: [ArgumentRule; 34] = [
     ("", &["json"], Excludes, &["format"], "--json is --format json; give one of them"),
     ("demo", &["scenario"], Excludes, &["output"], "--scenario prints the scenario and draws no pictures"),
     (
@@ -46,6 +46,20 @@ pub(crate) const RULES: [ArgumentRule; 32] = [
         Excludes,
         &["output"],
         "files and pictures are of missions that all set off at once; of hours there is a table, JSON or CSV on standard output",
+    ),
+    (
+        "traffic",
+        &["missions"],
+        Excludes,
+        &["agents", "hours", "seed", "compare", "stopped", "slip"],
+        "vehicles and missions are those of the file, which run once and without random delays",
+    ),
+    (
+        "traffic",
+        &["vehicles", "closures"],
+        Needs,
+        &["missions"],
+        "random missions have vehicles of their own and no closures; add --missions FILE",
     ),
     (
         "traffic",

@@ -1,7 +1,7 @@
 //! `pcr traffic`.
 
 use super::printed::notes;
-use super::scenario_sources::{layout, layout_source};
+use super::scenario_sources::{layout, layout_source, text};
 use super::{
     CONFLICTS, CliError, OutputArgs, OutputFormat, acknowledge, folder, map, parse_integer, say, whole_within, write_to,
 };
@@ -9,9 +9,11 @@ use crate::progress::ProgressLine;
 use clap::Args;
 use pcr_drawing::LayoutLevelView;
 use pcr_execution::lifelong::{self, CoordinationMethod, DelayModel, LifelongReport};
+use pcr_execution::missions::MissionsReport;
 use pcr_execution::report;
 use pcr_execution::traffic::{TrafficOptions, TrafficReport, room};
-use pcr_formats::import::{ImportOptions, ImportedLayout};
+use pcr_formats::import::{ImportOptions, ImportedLayout, SizeSource};
+use pcr_formats::missions::{FleetMissions, MissionSource, RecordKind};
 use pcr_formats::warning::WarningCode;
 use pcr_planning::report::json;
 use std::io::Write;
@@ -22,6 +24,7 @@ const EXAMPLES: &str = "\
 Examples:
   pcr traffic map.geojson --agents 50 --radius 0.4   waits and throughput
   pcr traffic map.geojson --radius 0.4 -o traffic    and files and pictures
+  pcr traffic map.geojson --missions day.jsonl       your own missions
   pcr traffic map.geojson --hours 1 --radius 0.4     mission after mission
   pcr traffic map.geojson --hours 1 --radius 0.4 --compare   also with locks";
 
@@ -30,12 +33,13 @@ Exit status:
   0  done; no contact, proved
   1  a contact, or one that could not be ruled out, or nobody has a plan, or
      fewer agents have a mission and a plan than --agents asks for;
+     with --missions also: a mission is impossible or was not done;
      with --hours also: a robot waits for ever or went beyond its hold, or
      missions waited while nobody reached a goal or moved for too long
   2  wrong arguments, or a layout that cannot be read or was refused
   3  the output could not be written";
 
-/// Plan random missions on a layout: waits and missions per hour
+/// Run missions on a layout, random ones or those of a file
 #[derive(Args)]
 #[command(after_help = format!("{EXAMPLES}\n\n{STATUSES}"))]
 pub(super) struct TrafficArgs {
@@ -44,6 +48,15 @@ pub(super) struct TrafficArgs {
     /// Agents; a mission each, or many with --hours [default: as many as there is room for, up to 50]
     #[arg(long, value_name = "N", value_parser = |text: &str| whole_within::<u16>(text, 1, u16::MAX.into()))]
     agents: Option<u16>,
+    /// Missions, vehicles and closures (JSON Lines or CSV)
+    #[arg(long, value_name = "FILE")]
+    missions: Option<PathBuf>,
+    /// Vehicles in a file of their own, for --missions
+    #[arg(long, value_name = "FILE")]
+    vehicles: Option<PathBuf>,
+    /// Closures and breakdowns in a file of their own
+    #[arg(long, value_name = "FILE")]
+    closures: Option<PathBuf>,
     /// The same seed gives the same missions
     #[arg(long, value_name = "N", default_value_t = 1, value_parser = parse_integer::<u64>)]
     seed: u64,
@@ -61,7 +74,7 @@ pub(super) struct TrafficArgs {
     slip: Option<f64>,
     #[command(flatten)]
     printed: OutputArgs,
-    /// Directory for missions.json, plan.json and pictures
+    /// Directory for missions.json and plan.json, or run.json, and pictures
     #[arg(short, long, value_name = "DIR", value_parser = folder())]
     output: Option<PathBuf>,
     #[command(flatten)]
@@ -89,13 +102,17 @@ impl TrafficArgs {
     }
 
     pub(super) fn run(self) -> Result<ExitCode, CliError> {
-        if self.hours.is_some() && self.import.corner_radius.is_some() {
-            return Err(CliError::arguments(
-                "--corner-radius has no effect: with --hours robots turn in place at corners",
-            ));
+        let runs = [(self.hours.is_some(), "--hours"), (self.missions.is_some(), "--missions")];
+        if let Some((_, option)) = runs.iter().find(|run| run.0 && self.import.corner_radius.is_some()) {
+            return Err(CliError::arguments(format!(
+                "--corner-radius has no effect: with {option} robots turn in place at corners"
+            )));
         }
-        let file = &layout_source(self.layout)?;
+        let file = &layout_source(self.layout.clone())?;
         let mut imported = layout(file, &self.import, "traffic", true)?;
+        if self.missions.is_some() {
+            return self.run_missions(file, &imported);
+        }
         pcr_exclusions::sized(&imported).map_err(|error| CliError::wrong(file, error))?;
         let agents = Self::room(self.agents, file, &mut imported);
         let asked = self.agents.map_or(agents, usize::from);
@@ -150,6 +167,57 @@ impl TrafficArgs {
         }
         let is_complete = self.agents.is_none() || traffic.is_complete();
         Ok(status(traffic.is_sound() && is_complete))
+    }
+}
+
+impl TrafficArgs {
+    /// Runs the missions of a file.
+    fn run_missions(&self, layout: &Path, imported: &ImportedLayout) -> Result<ExitCode, CliError> {
+        let files = [
+            (&self.vehicles, RecordKind::Vehicle),
+            (&self.missions, RecordKind::Mission),
+            (&self.closures, RecordKind::Closure),
+        ];
+        let files: Vec<(&Path, RecordKind)> =
+            files.into_iter().filter_map(|(file, kind)| Some((file.as_deref()?, kind))).collect();
+        let texts = files.iter().map(|(file, _)| text(file)).collect::<Result<Vec<String>, CliError>>()?;
+        let sources: Vec<MissionSource<'_>> =
+            files.iter().zip(&texts).map(|(&(_, kind), text)| MissionSource { text, kind }).collect();
+        let missions_file = self.missions.as_deref().unwrap_or(Path::new("-"));
+        let fleet = FleetMissions::read(&sources, &imported.layout, &imported.vehicle)
+            .map_err(|(place, error)| CliError::at(files[place].0, &error))?;
+        let wrong = |problem: String| CliError::wrong(missions_file, problem);
+        if fleet.vehicles.is_empty() {
+            return Err(wrong("there is no vehicle; add lines of the kind vehicle, or --vehicles FILE".into()));
+        }
+        if fleet.vehicles.iter().any(|vehicle| vehicle.traits.size == SizeSource::Assumed) {
+            pcr_exclusions::sized(imported).map_err(|error| CliError::wrong(layout, error))?;
+        }
+        if fleet.missions.is_empty() {
+            return Err(wrong("there is no mission".into()));
+        }
+        if self.output.is_some() {
+            map::are_few(fleet.vehicles.len(), "maps are drawn").map_err(|failure| wrong(failure.to_string()))?;
+        }
+        let progress = ProgressLine::new(format!("{}: missions", missions_file.display()));
+        let told = |_: f64, over: usize| progress.set(over, fleet.missions.len());
+        let answer = MissionsReport::run(imported, &fleet, &told);
+        drop(progress);
+        let (mut answer, mut scenario) = answer.map_err(wrong)?;
+        [&mut answer.warnings, &mut scenario.warnings].into_iter().for_each(acknowledge);
+        let mut out = self.printed.out(false);
+        match self.printed.form() {
+            OutputFormat::Table => report::missions_table(&answer, &mut out)?,
+            OutputFormat::Json => json(&answer, &mut out)?,
+            OutputFormat::Csv => report::missions_csv(&answer, &mut out)?,
+        }
+        out.flush()?;
+        if let Some(directory) = &self.output {
+            let ground = LayoutLevelView { imported, level: imported.layout.largest_level() };
+            map::draw(&scenario, None, Some(ground), directory, &mut notes())?;
+            write_to(&directory.join("run.json"), &scenario.to_json())?;
+        }
+        Ok(status(answer.is_sound()))
     }
 }
 

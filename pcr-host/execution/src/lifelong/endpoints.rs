@@ -275,9 +275,8 @@ fn are_open(site: &RouteGraph, nodes: &[usize], groups: &[Vec<usize>], ends: &[u
         own.all(|node| if free(node) { both.iter().all(|reached| reached[node]) } else { is_end(node) })
             && ends.iter().zip(&covers).all(|(&end, covers)| {
                 let Some(&node) = groups[end].iter().find(|&&node| site.layer_of(node) == layer) else { return true };
-                let open = |atom: usize| {
-                    blocked[atom] == 0 || (blocked[atom] == 1 && covers.binary_search(&atom).is_ok())
-                };
+                let open =
+                    |atom: usize| blocked[atom] == 0 || (blocked[atom] == 1 && covers.binary_search(&atom).is_ok());
                 let leaves = site.leaving[node].iter().any(|&atom| open(atom) && both[1][site.atoms[atom].ends[1]]);
                 let comes = site.coming[node].iter().any(|&atom| open(atom) && both[0][site.atoms[atom].ends[0]]);
                 leaves && comes

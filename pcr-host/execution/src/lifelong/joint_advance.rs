@@ -76,7 +76,7 @@ impl LifelongState {
 
     /// The robots whose missions wait, the oldest first.
     fn waiting(&self) -> Vec<usize> {
-        let since = |robot: usize| self.missions[robot].map_or(f64::INFINITY, |mission| mission.assigned_at);
+        let since = |robot: usize| self.missions[robot].map_or(f64::INFINITY, |mission| mission.rank);
         let is_waiting = |robot: &usize| self.missions[*robot].is_some_and(|mission| !mission.admitted);
         let mut waiting: Vec<usize> = (0..self.robots.len()).filter(is_waiting).collect();
         waiting.sort_by(|&a, &b| since(a).total_cmp(&since(b)));
@@ -216,7 +216,7 @@ impl LifelongState {
             if !mission.admitted && !self.robots[*robot].way.goals.is_empty() {
                 self.outcome.longest_wait = self.outcome.longest_wait.max(now - mission.assigned_at);
                 self.missions[*robot] = Some(RobotMission { admitted: true, prepared: Duration::ZERO, ..mission });
-                self.pass(mission.assigned_at);
+                self.pass(mission.rank);
             }
         }
     }
@@ -270,8 +270,9 @@ impl<'s> Push<'s> {
     fn candidates(&self, robot: usize) -> Vec<usize> {
         let LifelongState { site, network, missions, joint, .. } = self.state;
         let pose = self.state.whole(robot).end_pose;
-        let Some(mission) = missions[robot] else { return Vec::new() };
-        let left = network.times(site, mission.goal);
+        let times = missions[robot].map(|mission| network.times(site, mission.goal));
+        // A robot without a mission goes anywhere.
+        let left = |from: DeparturePose| times.as_ref().map_or(0.0, |times| times(from));
         let here = left(pose);
         let cost = |atom: usize| {
             let it = &site.atoms[atom];
@@ -315,7 +316,7 @@ impl<'s> Push<'s> {
     /// Whether a robot may be asked to make way: it has no goal on its way any more, and no older mission.
     fn makes_way(&self, robot: usize) -> bool {
         let LifelongState { robots, missions, .. } = self.state;
-        let since = |robot: usize| missions[robot].map_or(f64::INFINITY, |mission| mission.assigned_at);
+        let since = |robot: usize| missions[robot].map_or(f64::INFINITY, |mission| mission.rank);
         robots[robot].way.goals.is_empty() && since(self.root) <= since(robot)
     }
 }

@@ -53,6 +53,7 @@ impl RunCertificate {
             .zip(&mut window.places)
             .enumerate()
             .map(|(id, (robot, place))| {
+                robot.stops.clear();
                 let (phases, trail, since) = robot.report(place.since);
                 let (mut record, ends, gaps) =
                     RecordedMotion::of(site, id as u64, [begin, end], &phases, (&trail, since), *place)?;

@@ -39,6 +39,8 @@ pub(super) struct PlanningContext<'s> {
     pub(super) reserved: &'s [(usize, Vec<usize>)],
     /// For each atom how many robots stand for good in its way.
     pub(super) parked: &'s [u16],
+    /// Whether robots may stay at their goals if there is no end for them.
+    pub(super) stays: bool,
     pub(super) time: f64,
     /// In a large fleet: the times that the other robots keep while a decision about one is made.
     pub(super) timetable: Option<&'s Timetable>,

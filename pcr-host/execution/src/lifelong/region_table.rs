@@ -154,6 +154,16 @@ impl RegionTable {
         least
     }
 
+    /// The robot that has to go first where a robot has to wait next, within a length.
+    pub(super) fn next_first(&self, robot: usize, robots: &[LifelongRobot], far: f64) -> Option<usize> {
+        let second = self.row(robot).filter(|region| region.second() == robot);
+        let holds = second.map(|region| {
+            let first = region.robots[region.first];
+            (authority(region.gates(), robots[first].at), first)
+        });
+        holds.filter(|hold| hold.0 <= far).min_by(|a, b| a.0.total_cmp(&b.0)).map(|hold| hold.1)
+    }
+
     /// Removes the regions that a robot, or the other one, has left.
     pub(super) fn drop_over(&mut self, robot: usize, robots: &[LifelongRobot]) {
         let over = |place: &usize| {

@@ -43,6 +43,8 @@ pub(super) struct LifelongRobot {
     pub(super) trail: Vec<usize>,
     /// Number of atoms of its way that are in this list.
     entered: usize,
+    /// Its stops at corners, goals and ends: the time \[s\], the number of atoms in `trail`, and the length on the last of these \[m\].
+    pub(super) stops: Vec<(f64, usize, f64)>,
 }
 
 impl LifelongRobot {
@@ -61,6 +63,7 @@ impl LifelongRobot {
             done: Vec::new(),
             trail: Vec::new(),
             entered: 0,
+            stops: Vec::new(),
         }
     }
 
@@ -119,6 +122,9 @@ impl LifelongRobot {
         }
         if !comes {
             return false;
+        }
+        if self.at > before {
+            self.stops.push((time + step, self.trail.len(), self.along()));
         }
         // At a goal it may get another way before it turns for this one.
         if self.way.goals.first().is_some_and(|&goal| goal <= next) {

@@ -230,7 +230,8 @@ fn within(site: &RouteGraph, atom: &RouteElement, length: f64, abilities: &Kinem
     }
     // A turn of an outline has a length; at a node it is so slow that the robot need not stop before and after it.
     if atom.is_turn() {
-        return Vec::new();
+        let ends = if site.stops_at_turns { vec![length, length + atom.length] } else { Vec::new() };
+        return ends.into_iter().map(|at| RouteCorner { at, turn: 0.0 }).collect();
     }
     let turns = atom.segments.iter().filter(|segment| match segment.curve() {
         Curve::Pivot { lever, .. } => segment.length() > STRAIGHT * lever,

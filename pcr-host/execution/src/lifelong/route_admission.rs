@@ -97,6 +97,10 @@ impl PlanningContext<'_> {
                 // More robots than ends: any place where no robot stands.
                 onward = self.aside(robot, from, tolls, |_| true, ends);
             }
+            // Where no end can be reached, for example in a dead end, the vehicle stays.
+            if onward.is_empty() && self.stays && goals.last().is_some_and(|&goal| self.is_free(robot, goal)) {
+                onward.push(Vec::new());
+            }
             for end in onward {
                 let way: Vec<usize> = way.iter().chain(&end).copied().collect();
                 if found.iter().all(|(other, _)| *other != way) {

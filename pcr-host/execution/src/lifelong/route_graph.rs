@@ -65,6 +65,17 @@ pub(super) struct VehicleLayer {
     pub(super) forbidden: Vec<usize>,
 }
 
+impl VehicleLayer {
+    /// Whether both are of vehicles that drive alike.
+    pub(super) fn is_same(&self, other: &Self) -> bool {
+        let numbers = |it: &VehicleTraits| {
+            [it.radius, it.margin, it.speed, it.acceleration, it.rotation, it.rotation_acceleration]
+        };
+        let [own, its] = [&self.vehicle, &other.vehicle];
+        numbers(own) == numbers(its) && own.footprint == its.footprint && self.forbidden == other.forbidden
+    }
+}
+
 /// The bodies of the robots of a layer.
 #[derive(Clone, Debug)]
 pub(super) struct LayerBody {
@@ -113,6 +124,8 @@ pub(super) struct RouteGraph {
     touching_elements: Vec<Vec<usize>>,
     /// Bound on the error of curves, and on the distance of their ends from nodes \[m\].
     pub(super) position_error: f64,
+    /// Whether outlines come to rest before and after turns at nodes.
+    pub(super) stops_at_turns: bool,
     /// The bodies of each layer.
     pub(super) layers: Vec<LayerBody>,
     /// The contact of each pair of `near`, at the same indices, computed when it is first needed.
@@ -216,6 +229,7 @@ impl RouteGraph {
             at_nodes,
             touching_elements: near,
             position_error: off,
+            stops_at_turns: false,
             layers,
             contacts,
             covers,
@@ -233,6 +247,12 @@ impl RouteGraph {
     /// Whether the robots of a layer have outlines.
     pub(super) fn is_outline(&self, layer: usize) -> bool {
         !self.layers[layer].body.is_disc()
+    }
+
+    /// An atom on which the outlines of a layer drive backward.
+    pub(super) fn backward(&self, layer: usize) -> Option<usize> {
+        let backward = |atom: &RouteElement| atom.layer == layer && atom.facing != 0.0;
+        self.atoms.iter().position(backward)
     }
 
     /// Number of nodes of the layout, each of which is in all layers.

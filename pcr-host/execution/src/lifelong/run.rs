@@ -109,7 +109,7 @@ fn driven(mut run: LifelongState, request: LifelongOptions, told: &dyn Fn(f64)) 
 
 impl LifelongState {
     /// Advances all robots by a step.
-    fn step(&mut self, tick: usize, now: f64, open: bool) {
+    pub(super) fn step(&mut self, tick: usize, now: f64, open: bool) {
         let fars: Vec<f64> = self.robots.iter().map(|it| it.horizon(STEP)).collect();
         if self.request.method == CoordinationMethod::EdgeLocks {
             self.locks.give(&self.site, &self.robots, |robot| fars[robot]);
@@ -124,6 +124,10 @@ impl LifelongState {
             let stop = it.stop();
             self.outcome.authority_overruns += usize::from(stop > hold + 1e-9 && stop > it.at);
             disturb(it, robot, tick, now, open, &self.request);
+            if self.own.is_some() {
+                self.note_wait(robot, hold, now);
+            }
+            let it = &mut self.robots[robot];
             if open {
                 // A hold that lies beyond the next step and its stopping way holds the robot back from nothing.
                 let held = hold < fars[robot];
@@ -143,6 +147,7 @@ impl LifelongState {
     }
 
     fn arrived(&mut self, robot: usize, now: f64) {
+        self.reached_stop(robot, now);
         self.outcome.missions += 1;
         self.last_arrival = now;
         if now > START * self.request.duration && now <= self.request.duration {

@@ -6,6 +6,7 @@ use super::joint_phase::JointPhase;
 use super::kinematic_limits::KinematicLimits;
 use super::motion_record::RunCertificate;
 use super::outcome::{LifelongResult, TimeShares};
+use super::own_missions::OwnMissions;
 use super::parking_spots::queued;
 use super::planning_context::PlanningContext;
 use super::random_draws::{self, starts};
@@ -27,6 +28,8 @@ use std::time::{Duration, Instant};
 pub(super) struct RobotMission {
     pub(super) goal: usize,
     pub(super) assigned_at: f64,
+    /// The mission of the least rank decides first: by age, or by priority and age.
+    pub(super) rank: f64,
     /// Time that a robot alone would take \[s\].
     pub(super) unimpeded_time: f64,
     /// Whether it has a way.
@@ -76,6 +79,8 @@ pub(super) struct LifelongState {
     pub(super) joint: JointPhase,
     /// Tasks that are not done yet, if the robots share them.
     pub(super) tasks: Option<TaskQueue>,
+    /// Missions of a file, instead of random ones.
+    pub(super) own: Option<OwnMissions>,
 }
 
 impl LifelongState {
@@ -84,37 +89,52 @@ impl LifelongState {
         request: LifelongOptions,
         tasks: Option<&TaskStream>,
     ) -> Result<Self, String> {
-        let mut site = RouteGraph::new(imported)?;
-        let mut ends = Endpoints::of(&site, request.seed);
+        let site = RouteGraph::new(imported)?;
+        let ends = Endpoints::of(&site, request.seed);
         let layout = ends.report(&site, &imported.layout);
         let starts = match tasks {
             Some(tasks) => tasks.starts(&site)?,
             None => starts(&site, &ends, request.agents, request.seed),
         };
+        let run = Self::standing(Some(imported), site, ends, layout, &starts, request)?;
+        // Not in unoptimized tests, because it takes long there.
+        if !cfg!(debug_assertions) && tasks.is_some() {
+            run.network.warm(&run.site, &run.ends.nodes);
+        }
+        Ok(Self { tasks: tasks.map(TaskQueue::of), ..run })
+    }
+
+    /// A fleet that stands at these nodes. `imported` is the layout if additional places on its dead ends may be used.
+    pub(super) fn standing(
+        imported: Option<&ImportedLayout>,
+        mut site: RouteGraph,
+        mut ends: Endpoints,
+        layout: WellFormedness,
+        starts: &[usize],
+        request: LifelongOptions,
+    ) -> Result<Self, String> {
         // With fewer robots than safe ends a robot can always make way at a free end.
-        let places = (starts.len() >= ends.safe.len()).then(|| queued(imported, &site));
-        let is_full = |lanes: &[Vec<usize>]| starts.len() > ends.safe.len() || lanes.iter().any(|lane| lane.len() > 1);
+        let is_tight = starts.len() >= ends.capacity;
+        let places = imported.filter(|_| is_tight).map(|imported| queued(imported, &site));
+        let is_full = |lanes: &[Vec<usize>]| starts.len() > ends.capacity || lanes.iter().any(|lane| lane.len() > 1);
         let places = places.filter(|(_, lanes)| is_full(lanes));
-        let crowded = places.is_some();
+        let crowded = places.is_some() || (imported.is_none() && starts.len() > ends.capacity);
         if let Some((queued, lanes)) = places {
             site = RouteGraph::new(&queued)?;
             ends = ends.queued(&site, lanes);
         }
-        let abilities = KinematicLimits::of(&imported.vehicle);
         let network = RouteFinder::new(&site);
         // Not in unoptimized tests, because it takes long there.
         if !cfg!(debug_assertions) {
             site.warm();
             ends.harm(&site);
-            if tasks.is_some() {
-                network.warm(&site, &ends.nodes);
-            }
         }
         if starts.is_empty() {
             return Err("the layout has no two nodes that can be reached from one another".into());
         }
+        let abilities = |node: usize| KinematicLimits::of(&site.layers[site.layer_of(node)].vehicle);
         let robots: Vec<LifelongRobot> =
-            starts.iter().map(|&node| LifelongRobot::new(Route::standing(&site, node), abilities)).collect();
+            starts.iter().map(|&node| LifelongRobot::new(Route::standing(&site, node), abilities(node))).collect();
         let mut parked = vec![0; site.atoms.len()];
         starts.iter().for_each(|&node| site.covers(node).iter().for_each(|&atom| parked[atom] += 1));
         let count = robots.len();
@@ -162,7 +182,8 @@ impl LifelongState {
             last_arrival: 0.0,
             quiet: 0.0,
             joint: JointPhase::default(),
-            tasks: tasks.map(TaskQueue::of),
+            tasks: None,
+            own: None,
         })
     }
 
@@ -175,6 +196,10 @@ impl LifelongState {
     pub(super) fn give(&mut self, now: f64) {
         if self.tasks.is_some() {
             self.assign(now);
+            return;
+        }
+        if self.own.is_some() {
+            self.give_own(now);
             return;
         }
         for robot in 0..self.robots.len() {
@@ -196,6 +221,7 @@ impl LifelongState {
             self.missions[robot] = Some(RobotMission {
                 goal,
                 assigned_at: now,
+                rank: now,
                 unimpeded_time: alone,
                 admitted,
                 passed: 0,
@@ -205,10 +231,22 @@ impl LifelongState {
         }
     }
 
+    /// The goal of a robot after its present one, if it has one.
+    pub(super) fn next_goal(&self, robot: usize, after: usize) -> Option<usize> {
+        match &self.own {
+            Some(own) => own.next_stop(robot).map(|stop| self.node_of_layer(robot, stop)),
+            None => {
+                let number = self.given[robot];
+                Some(random_draws::goal(&self.site, &self.ends, self.request.seed, robot, number, after))
+            }
+        }
+    }
+
     /// Whether decisions look at some of the robots only: in a large fleet, and if robots share their tasks, because another
     /// robot then takes over a late task.
     pub(super) fn is_large(&self) -> bool {
-        self.request.method == CoordinationMethod::Orders && (self.robots.len() > WHOLE || self.tasks.is_some())
+        self.request.method == CoordinationMethod::Orders
+            && (self.robots.len() > WHOLE && self.own.is_none() || self.tasks.is_some())
     }
 
     pub(super) fn scene(&self, now: f64) -> PlanningContext<'_> {
@@ -223,6 +261,7 @@ impl LifelongState {
             is_urgent: self.is_urgent,
             reserved: &self.reserved,
             parked: &self.parked,
+            stays: self.own.is_some(),
             time: now,
             timetable: self.is_large().then_some(&self.timetable),
             method: self.request.method,

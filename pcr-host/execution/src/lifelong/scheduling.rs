@@ -3,7 +3,6 @@
 
 use super::CoordinationMethod;
 use super::forecast::ForecastInput;
-use super::random_draws;
 use super::region_waits::FleetWaits;
 use super::run_state::{LifelongState, RobotMission};
 use std::time::Instant;
@@ -104,9 +103,8 @@ impl LifelongState {
             if *tries >= TRIES || it.way.time(goal) - it.progress(None, now) > ahead {
                 continue;
             }
+            let Some(next) = self.next_goal(robot, mission.goal) else { continue };
             *tries += 1;
-            let next =
-                random_draws::goal(&self.site, &self.ends, self.request.seed, robot, self.given[robot], mission.goal);
             let begin = Instant::now();
             let found = self.scene(now).dispatch(robot, &[mission.goal, next]);
             self.decisions.push(begin.elapsed());
@@ -181,7 +179,7 @@ impl LifelongState {
         let Some(goal) = self.missions[robot].map(|mission| mission.goal) else { return };
         let mut goals = vec![goal];
         if self.robots[robot].way.goals.len() > 1 {
-            goals.push(random_draws::goal(&self.site, &self.ends, self.request.seed, robot, self.given[robot], goal));
+            goals.extend(self.next_goal(robot, goal));
         }
         let begin = Instant::now();
         let found = self.scene(now).better(robot, &goals, GAIN);

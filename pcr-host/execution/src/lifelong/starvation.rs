@@ -21,7 +21,7 @@ impl LifelongState {
     pub(super) fn try_missions(&mut self, now: f64) -> usize {
         let mut waiting: Vec<(f64, usize)> = Vec::new();
         for (robot, mission) in self.missions.iter().enumerate() {
-            waiting.extend(mission.filter(|mission| !mission.admitted).map(|mission| (mission.assigned_at, robot)));
+            waiting.extend(mission.filter(|mission| !mission.admitted).map(|mission| (mission.rank, robot)));
         }
         waiting.sort_by(|a, b| a.0.total_cmp(&b.0));
         let active = self.robots.len() - waiting.len();
@@ -53,7 +53,7 @@ impl LifelongState {
     /// Largest number of robots that drive at a time if there are more robots than safe ends: the number of safe ends, or a third of the
     /// nodes if there are less than an eighth as many safe ends as robots. At least one.
     fn most_active(&self) -> usize {
-        let safe = self.ends.safe.len();
+        let safe = self.ends.capacity;
         let few = 8 * safe < self.robots.len();
         if few { (self.site.points.len() / 3).max(1) } else { safe }
     }
@@ -119,14 +119,14 @@ impl LifelongState {
         self.take(robot, admitted);
         self.outcome.longest_wait = self.outcome.longest_wait.max(now - mission.assigned_at);
         self.missions[robot] = Some(RobotMission { admitted: true, prepared: Duration::ZERO, ..mission });
-        self.pass(mission.assigned_at);
+        self.pass(mission.rank);
         true
     }
 
-    /// Counts a mission given at `since` as having overtaken all older missions that wait.
-    pub(super) fn pass(&mut self, since: f64) {
+    /// Counts a mission of this rank as having overtaken all older missions that wait.
+    pub(super) fn pass(&mut self, rank: f64) {
         for other in self.missions.iter_mut().flatten() {
-            other.passed += usize::from(!other.admitted && other.assigned_at < since);
+            other.passed += usize::from(!other.admitted && other.rank < rank);
         }
     }
 

@@ -70,6 +70,7 @@ impl LifelongState {
         self.missions[robot] = Some(RobotMission {
             goal,
             assigned_at: since,
+            rank: since,
             unimpeded_time: 0.0,
             admitted: false,
             passed: 0,

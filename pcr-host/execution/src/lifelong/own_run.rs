@@ -1,0 +1,299 @@
+//! A run of the missions of a file: until all are done or given up, without random delays.
+
+use super::endpoints::{Endpoints, WellFormedness};
+use super::own_missions::{MissionOutcome, OwnMission, OwnMissions, OwnWait};
+use super::random_draws::STEP;
+use super::robot::LifelongRobot;
+use super::route_graph::{RouteGraph, VehicleLayer};
+use super::run_state::LifelongState;
+use super::trajectory;
+use super::{CoordinationMethod, DelayModel, LifelongOptions};
+use pcr_formats::import::ImportedLayout;
+use pcr_formats::missions::{FleetMissions, FleetVehicle};
+use pcr_formats::scenario::Scenario;
+
+/// If no vehicle has moved for this long and nothing is to come, none ever will \[s\].
+const STILL: f64 = 120.0;
+
+/// If no stop was reached for this long although vehicles move, the other missions are given up \[s\].
+const FRUITLESS: f64 = 3600.0;
+
+/// What became of the missions of a file.
+#[derive(Clone, Debug)]
+pub struct MissionRun {
+    /// What became of each mission.
+    pub missions: Vec<MissionResult>,
+    /// Where vehicles waited for others, in the order of time.
+    pub waits: Vec<MissionWait>,
+    /// The whole run as a scenario, with an agent for each vehicle.
+    pub scenario: Scenario,
+    /// For each vehicle the node of the layout where it stands in the end; `None` on an edge.
+    pub ends: Vec<Option<usize>>,
+    /// Time at which the last vehicle stands \[s\].
+    pub duration: f64,
+}
+
+/// What became of a mission.
+#[derive(Clone, Debug, PartialEq)]
+pub struct MissionResult {
+    /// Index of its vehicle, if it has one.
+    pub vehicle: Option<usize>,
+    /// Time at which its vehicle got a route for it \[s\].
+    pub start: Option<f64>,
+    /// Times at which its stops were reached \[s\].
+    pub reached: Vec<f64>,
+    /// Reason why it was given up.
+    pub reason: Option<String>,
+}
+
+/// A vehicle that waited for another one.
+#[derive(Clone, Debug, PartialEq)]
+pub struct MissionWait {
+    /// Index of the vehicle.
+    pub vehicle: usize,
+    /// Index of the vehicle that went first.
+    pub first: usize,
+    /// From when to when \[s\].
+    pub time: [f64; 2],
+    /// Id of the edge on which it stood; `None` at a node.
+    pub edge: Option<String>,
+    /// Where it stood \[m\].
+    pub point: [f64; 2],
+}
+
+/// Runs the missions of a file on a layout; `told` gets the simulated time and the number of missions that are over.
+///
+/// # Errors
+/// Vehicles that touch where they start, a vehicle on edges that it cannot drive, or an edge that is no path.
+pub fn run_missions(
+    imported: &ImportedLayout,
+    fleet: &FleetMissions,
+    told: &dyn Fn(f64, usize),
+) -> Result<MissionRun, String> {
+    let mut run = LifelongState::of_fleet(imported, fleet)?;
+    run.refuse_impossible();
+    let (mut still, mut tick) = (0.0, 0);
+    loop {
+        let now = tick as f64 * STEP;
+        let stand = run.robots.iter().all(LifelongRobot::has_arrived);
+        let Some(own) = &run.own else { break };
+        let is_to_come = own.is_to_come(now);
+        if own.is_over() && stand {
+            break;
+        }
+        if !is_to_come && (still > STILL || now - own.progress > FRUITLESS) {
+            run.give_up(now);
+            if still > STILL {
+                break;
+            }
+        }
+        if tick % 100 == 0 {
+            told(now, run.own.as_ref().map_or(0, OwnMissions::over));
+        }
+        run.give(now);
+        run.decide(now);
+        run.note_begun(now);
+        let before: f64 = run.robots.iter().map(|robot| robot.at).sum();
+        run.step(tick, now, true);
+        let moves = run.robots.iter().map(|robot| robot.at).sum::<f64>() != before;
+        let waits = run.missions.iter().flatten().any(|mission| !mission.admitted);
+        run.quiet = if waits && run.robots.iter().all(LifelongRobot::has_arrived) { run.quiet + STEP } else { 0.0 };
+        still = if moves { 0.0 } else { still + STEP };
+        tick += 1;
+    }
+    run.result(fleet, &imported.layout.name, tick as f64 * STEP)
+}
+
+impl LifelongState {
+    /// The fleet of a file, before anything happens.
+    fn of_fleet(imported: &ImportedLayout, fleet: &FleetMissions) -> Result<Self, String> {
+        let FleetMissions { vehicles, .. } = fleet;
+        let mut layers: Vec<VehicleLayer> = Vec::new();
+        let mut layer_of = Vec::new();
+        for FleetVehicle { traits, forbidden, .. } in vehicles {
+            let layer = VehicleLayer { vehicle: traits.clone(), forbidden: forbidden.clone() };
+            let known = layers.iter().position(|other| other.is_same(&layer));
+            layer_of.push(known.unwrap_or(layers.len()));
+            if known.is_none() {
+                layers.push(layer);
+            }
+        }
+        let mut site = RouteGraph::layered(&imported.layout, &layers)?;
+        site.stops_at_turns = true;
+        let id = |robot: usize| &vehicles[robot].id;
+        let starts: Vec<usize> =
+            vehicles.iter().zip(&layer_of).map(|(it, layer)| layer * site.places() + it.start).collect();
+        for (robot, &start) in starts.iter().enumerate() {
+            if let Some(atom) = site.backward(layer_of[robot]) {
+                let edge = site.atoms[atom].edge.map(|edge| imported.layout.edges[edge].id.to_string());
+                return Err(format!(
+                    "vehicle {} drives backward on edge {}, which is not possible with an outline yet; give it a radius",
+                    id(robot),
+                    edge.unwrap_or_default()
+                ));
+            }
+            if let Some(other) = starts[..robot].iter().position(|&other| site.collide(other, start)) {
+                return Err(format!("vehicles {} and {} touch where they start", id(other), id(robot)));
+            }
+        }
+        let ends = Endpoints::of(&site, 1);
+        let delays = DelayModel { stopped: 0.0, stop: 1.0, slip: 0.0 };
+        let method = CoordinationMethod::Orders;
+        let request = LifelongOptions { agents: starts.len(), duration: f64::INFINITY, delays, seed: 1, method };
+        let run = Self::standing(None, site, ends, WellFormedness::default(), &starts, request)?;
+        Ok(Self { own: Some(OwnMissions::new(fleet, &imported.layout)), ..run })
+    }
+
+    /// Gives up the missions that no vehicle can do, whatever the others do.
+    fn refuse_impossible(&mut self) {
+        let Some(own) = &self.own else { return };
+        let reasons: Vec<(usize, String)> = own
+            .missions
+            .iter()
+            .enumerate()
+            .filter(|(_, mission)| mission.outcome == MissionOutcome::Open)
+            .filter_map(|(place, mission)| Some((place, self.why_impossible(own, mission)?)))
+            .collect();
+        if let Some(own) = &mut self.own {
+            reasons.into_iter().for_each(|(mission, why)| own.refuse(mission, why));
+        }
+    }
+
+    /// The reason why no vehicle can do a mission from where it is now; `None` if one can.
+    fn why_impossible(&self, own: &OwnMissions, mission: &OwnMission) -> Option<String> {
+        let stops = &mission.request.stops[mission.reached.len().min(mission.request.stops.len())..];
+        let vehicles: Vec<usize> = match mission.request.vehicle {
+            Some(vehicle) => vec![vehicle],
+            None => (0..self.robots.len()).collect(),
+        };
+        if vehicles.is_empty() {
+            return Some("there is no vehicle".into());
+        }
+        let mut reasons = Vec::new();
+        for vehicle in vehicles {
+            let lost = (1..=stops.len()).find(|&count| self.time_to(vehicle, &stops[..count]) == f64::INFINITY)?;
+            let id = &own.fleet.vehicles[vehicle].id;
+            let from = match lost.checked_sub(2) {
+                Some(before) => format!("node {}", self.name_of(stops[before])),
+                None => "where it is".into(),
+            };
+            let forbidden = &own.fleet.vehicles[vehicle].forbidden;
+            let why = if forbidden.is_empty() { "" } else { " without the edges that are forbidden to it" };
+            reasons.push(format!(
+                "vehicle {id}: no route leads from {from} to node {}{why}",
+                self.name_of(stops[lost - 1])
+            ));
+        }
+        Some(reasons.join("; "))
+    }
+
+    /// The name of a node of the layout.
+    fn name_of(&self, place: usize) -> &str {
+        self.own.as_ref().and_then(|own| own.nodes.get(place)).map_or("", String::as_str)
+    }
+
+    /// Gives up all missions that are not done.
+    fn give_up(&mut self, now: f64) {
+        let Some(own) = &self.own else { return };
+        let is_left = |mission: &&OwnMission| matches!(mission.outcome, MissionOutcome::Open | MissionOutcome::Begun);
+        let left: Vec<usize> = (0..own.missions.len()).filter(|&k| is_left(&&own.missions[k])).collect();
+        let reasons: Vec<String> = left.iter().map(|&mission| self.why_left(own, mission, now)).collect();
+        let Some(own) = &mut self.own else { return };
+        for (mission, why) in left.into_iter().zip(reasons) {
+            own.refuse(mission, why);
+        }
+        own.progress = now;
+        self.missions.fill(None);
+    }
+
+    /// The reason why a mission did not come to its end.
+    fn why_left(&self, own: &OwnMissions, mission: usize, now: f64) -> String {
+        let it = &own.missions[mission];
+        let Some(vehicle) = it.vehicle else {
+            return match self.why_impossible(own, it) {
+                Some(why) => why,
+                None => "every vehicle that can do it was on another mission to the end".into(),
+            };
+        };
+        let id = |robot: usize| own.fleet.vehicles[robot].id.as_str();
+        let Some(&stop) = it.request.stops.get(it.reached.len()) else { return String::new() };
+        let goal = self.node_of_layer(vehicle, stop);
+        let scene = self.scene(now);
+        match scene.wanted(vehicle, goal).map(|route| scene.standing_on(vehicle, &route)) {
+            None => format!("vehicle {}: no route leads to node {} at present", id(vehicle), self.name_of(stop)),
+            Some(others) if others.is_empty() => {
+                format!("vehicle {}: no route to node {} was admitted", id(vehicle), self.name_of(stop))
+            }
+            Some(others) => {
+                let names: Vec<&str> = others.iter().map(|&other| id(other)).collect();
+                format!(
+                    "vehicle {}: on its route to node {} stands {}, and nobody there can make way",
+                    id(vehicle),
+                    self.name_of(stop),
+                    names.join(", ")
+                )
+            }
+        }
+    }
+
+    /// Notes which missions have got a route for their vehicles.
+    fn note_begun(&mut self, now: f64) {
+        let Some(own) = &mut self.own else { return };
+        for (robot, current) in own.current.iter().enumerate() {
+            if let Some(mission) = *current
+                && self.missions[robot].is_some_and(|mission| mission.admitted)
+            {
+                own.missions[mission].begun.get_or_insert(now);
+            }
+        }
+    }
+
+    /// Notes for which vehicle another one waits at its hold.
+    pub(super) fn note_wait(&mut self, robot: usize, hold: f64, now: f64) {
+        /// A vehicle within this distance of its hold waits there \[m\].
+        const NEAR: f64 = 0.01;
+        let it = &self.robots[robot];
+        let is_driving = it.speed > 0.0 || it.has_arrived() || it.turning > now || it.stopped_until > now;
+        if is_driving || hold - it.at > NEAR {
+            return;
+        }
+        let Some(other) = self.book.next_first(robot, &self.robots, hold + 1e-6) else { return };
+        let (atom, point) = (it.way.atoms[it.way.atom(it.at)], it.way.point(&self.site, it.at));
+        let atom = if it.way.node(&self.site, it.at).is_some() { None } else { self.site.atoms[atom].edge };
+        if let Some(own) = &mut self.own {
+            own.wait(OwnWait { vehicle: robot, other, time: [now, now + STEP], edge: atom, point });
+        }
+    }
+
+    /// The results of a run of some seconds.
+    fn result(self, fleet: &FleetMissions, name: &str, duration: f64) -> Result<MissionRun, String> {
+        let Some(own) = &self.own else { return Err("there are no missions".into()) };
+        let missions = own.missions.iter().map(|it| MissionResult {
+            vehicle: it.vehicle,
+            start: it.begun,
+            reached: it.reached.clone(),
+            reason: match &it.outcome {
+                MissionOutcome::Refused(why) => Some(why.clone()),
+                _ => None,
+            },
+        });
+        let waits = own.waits.iter().map(|it| MissionWait {
+            vehicle: it.vehicle,
+            first: it.other,
+            time: it.time,
+            edge: it.edge.map(|edge| own.edges[edge].clone()),
+            point: it.point,
+        });
+        let (missions, mut waits): (Vec<_>, Vec<MissionWait>) = (missions.collect(), waits.collect());
+        waits.sort_by(|a, b| a.time[0].total_cmp(&b.time[0]).then(a.vehicle.cmp(&b.vehicle)));
+        let mut agents = Vec::new();
+        for ((robot, it), vehicle) in self.robots.iter().enumerate().zip(&fleet.vehicles) {
+            let start = self.site.layer_of(it.way.end()) * self.site.places() + vehicle.start;
+            let agent = trajectory::agent(&self.site, it, robot as u64 + 1, &vehicle.id, start);
+            agents.push(agent.map_err(|problem| format!("vehicle {}: {problem}", vehicle.id))?);
+        }
+        let end = |robot: &LifelongRobot| robot.way.node(&self.site, robot.at).map(|node| node % self.site.places());
+        let ends = self.robots.iter().map(end).collect();
+        Ok(MissionRun { missions, waits, scenario: Scenario::new(name, agents), ends, duration })
+    }
+}

@@ -1,0 +1,230 @@
+//! What a robot did from the beginning on, as an agent of a scenario: its path, and its speed on it.
+//!
+//! Turns in place have a length here, of a disc none and of an outline that of its lever; in a scenario they are arcs of [`TURN`] radius. So
+//! the motion is cut at the stops before and after them, and scaled onto the length that the scenario has in between. A disc turns while it
+//! stands.
+
+use super::robot::{LifelongRobot, RobotPhase};
+use super::route_graph::{RouteGraph, STRAIGHT, wrapped};
+use pcr_core::{Curve, TurnSide};
+use pcr_formats::scenario::{Agent, MotionSpec, PathSegment, PlacedSegment, TURN};
+use std::collections::VecDeque;
+
+/// Lengths that differ by less are equal \[m\].
+const NEAR: f64 = 1e-7;
+
+/// Time that is rounding and nothing else \[s\].
+const SHORT: f64 = 1e-9;
+
+/// Angle that is rounding and nothing else \[rad\].
+const NO_TURN: f64 = 1e-9;
+
+/// A segment of the scenario.
+struct DrivenSegment {
+    shape: PathSegment,
+    /// Lengths of the robot at its ends \[m\].
+    driven: [f64; 2],
+    /// Whether it is a turn while a disc stands.
+    is_standing_turn: bool,
+}
+
+/// A path in the making.
+#[derive(Default)]
+struct DrivenPath {
+    start: Option<[f64; 3]>,
+    at: [f64; 2],
+    heading: f64,
+    driven: f64,
+    segments: Vec<DrivenSegment>,
+}
+
+impl DrivenPath {
+    fn push(&mut self, shape: PathSegment, driven: f64, is_standing_turn: bool) {
+        let placed = PlacedSegment { start: self.at, heading: self.heading, shape };
+        (self.at, self.heading) = (placed.end(), placed.heading_at_end());
+        let ends = [self.driven, self.driven + driven];
+        self.driven = ends[1];
+        self.segments.push(DrivenSegment { shape, driven: ends, is_standing_turn });
+    }
+
+    /// Turns to a heading; the path begins here if it has not begun.
+    fn face(&mut self, at: [f64; 2], heading: f64) {
+        if self.start.is_none() {
+            (self.at, self.heading, self.start) = (at, heading, Some([at[0], at[1], heading]));
+        }
+        let sweep = wrapped(heading - self.heading);
+        if sweep.abs() > NO_TURN {
+            self.push(PathSegment::Arc { radius: TURN, sweep }, 0.0, sweep.abs() > STRAIGHT);
+        }
+    }
+
+    /// Adds a line to a point.
+    fn line(&mut self, from: [f64; 2], to: [f64; 2], driven: f64) {
+        let at = if self.start.is_none() { from } else { self.at };
+        if f64::hypot(to[0] - at[0], to[1] - at[1]) < NEAR {
+            self.driven += driven;
+            return;
+        }
+        self.face(at, PlacedSegment::line(at, to).heading);
+        self.push(PlacedSegment::line(self.at, to).shape, driven, false);
+    }
+}
+
+/// The agent of a robot that began at a node.
+///
+/// # Errors
+/// A motion that is not along its path.
+pub(super) fn agent(
+    site: &RouteGraph,
+    robot: &LifelongRobot,
+    id: u64,
+    label: &str,
+    start: usize,
+) -> Result<Agent, String> {
+    let layer = site.layer_of(start);
+    let vehicle = &site.layers[layer].vehicle;
+    let mut path = DrivenPath::default();
+    // Length of the robot before each atom.
+    let mut before = Vec::with_capacity(robot.trail.len() + 1);
+    let mut length = 0.0;
+    for (k, &atom) in robot.trail.iter().enumerate() {
+        before.push(length);
+        let element = &site.atoms[atom];
+        let is_last = k + 1 == robot.trail.len();
+        let left = if is_last { robot.along().min(element.length) } else { element.length };
+        add(&mut path, site, atom, left);
+        length += left;
+        path.driven = length;
+    }
+    let start = path.start.unwrap_or_else(|| {
+        let [x, y] = site.points[start];
+        [x, y, site.first_heading(start).unwrap_or(0.0)]
+    });
+    let motion = MotionSpec::Profile { v0: 0.0, pieces: pieces(&path, robot, &before, length)? };
+    Ok(Agent {
+        id,
+        label: label.to_owned(),
+        radius: vehicle.radius,
+        footprint: vehicle.footprint.clone(),
+        loads: Vec::new(),
+        margin: vehicle.margin,
+        t_start: 0.0,
+        start,
+        path: path.segments.iter().map(|segment| segment.shape).collect(),
+        motion,
+    })
+}
+
+/// Adds the first metres of an atom.
+fn add(path: &mut DrivenPath, site: &RouteGraph, atom: usize, mut left: f64) {
+    let element = &site.atoms[atom];
+    if !site.is_outline(element.layer) {
+        for placed in &element.shapes {
+            let keep = placed.shape.length().min(left);
+            left -= keep;
+            if keep <= 0.0 {
+                continue;
+            }
+            let part = placed.part(0.0, keep);
+            match part.shape {
+                PathSegment::Line { .. } => path.line(part.start, part.end(), keep),
+                PathSegment::Arc { .. } => {
+                    path.face(part.start, part.heading);
+                    path.push(part.shape, keep, false);
+                }
+            }
+        }
+        return;
+    }
+    for segment in &element.segments {
+        let keep = segment.length().min(left);
+        left -= keep;
+        if keep <= 0.0 {
+            continue;
+        }
+        let point = |length: f64| {
+            let point = segment.point_at(length);
+            [point.x, point.y]
+        };
+        let signed = |angle: f64, turn: TurnSide| if turn == TurnSide::Left { angle } else { -angle };
+        match segment.curve() {
+            Curve::Line => path.line(point(0.0), point(keep), keep),
+            Curve::Arc { radius, turn } => {
+                path.face(point(0.0), segment.heading_at(0.0).0);
+                path.push(PathSegment::Arc { radius, sweep: signed(keep / radius, turn) }, keep, false);
+            }
+            Curve::Pivot { lever, turn } => {
+                path.face(point(0.0), segment.heading_at(0.0).0);
+                path.push(PathSegment::Arc { radius: TURN, sweep: signed(keep / lever, turn) }, keep, false);
+            }
+        }
+    }
+}
+
+/// Durations \[s\] and accelerations \[m/s²\] along the path.
+fn pieces(path: &DrivenPath, robot: &LifelongRobot, before: &[f64], length: f64) -> Result<Vec<(f64, f64)>, String> {
+    let borders: Vec<f64> = path.segments.iter().flat_map(|segment| segment.driven).collect();
+    let is_border = |at: f64| borders.iter().any(|border| (border - at).abs() < NEAR);
+    // Stops where a segment ends, and the end.
+    let mut stops: Vec<(f64, f64)> = vec![(0.0, 0.0)];
+    for &(time, atoms, along) in &robot.stops {
+        let at = atoms.checked_sub(1).map_or(0.0, |last| before[last] + along);
+        if at > stops[stops.len() - 1].1 + NEAR && is_border(at) {
+            stops.push((time, at));
+        }
+    }
+    let mut pieces = Vec::new();
+    let mut phases: VecDeque<RobotPhase> = robot.done.iter().copied().collect();
+    let mut next = 0;
+    for (k, &(_, from)) in stops.iter().enumerate() {
+        let (until, to) = stops.get(k + 1).copied().unwrap_or((f64::INFINITY, length));
+        // What the robot did until it stopped there, with the time for which it stood first.
+        let (mut stood, mut done) = (0.0, Vec::new());
+        while phases.front().is_some_and(|phase| phase.time < until - SHORT)
+            && let Some(mut phase) = phases.pop_front()
+        {
+            let is_still = phase.speed == [0.0; 2];
+            let beyond = phase.time + phase.duration - until;
+            if is_still && beyond > SHORT {
+                phase.duration -= beyond;
+                phases.push_front(RobotPhase { time: until, duration: beyond, ..phase });
+            }
+            if is_still && done.is_empty() { stood += phase.duration } else { done.push(phase) }
+        }
+        // The segments between the two stops.
+        let (mut turns, mut ahead) = (0.0, 0.0);
+        while let Some(segment) = path.segments.get(next) {
+            let is_turn = segment.is_standing_turn;
+            let is_inside = if is_turn { segment.driven[0] < to - NEAR } else { segment.driven[1] < to + NEAR };
+            if !is_inside {
+                break;
+            }
+            let is_first = segment.driven[0] < from + NEAR;
+            if is_turn && is_first {
+                turns += segment.shape.length()
+            } else {
+                ahead += segment.shape.length()
+            }
+            next += 1;
+        }
+        if turns > 0.0 {
+            if stood <= 0.0 {
+                return Err("a turn in place without a stop".into());
+            }
+            let gain = 4.0 * turns / (stood * stood);
+            pieces.extend([(0.5 * stood, gain), (0.5 * stood, -gain)]);
+        } else if stood > 0.0 {
+            pieces.push((stood, 0.0));
+        }
+        let driven: f64 = done.iter().map(|phase| 0.5 * (phase.speed[0] + phase.speed[1]) * phase.duration).sum();
+        if ahead > 0.0 && driven <= 0.0 {
+            return Err("a path without a motion".into());
+        }
+        let scale = if driven > 0.0 { ahead / driven } else { 0.0 };
+        for phase in done {
+            let [begin, end] = phase.speed.map(|speed| speed * scale);
+            pieces.push((phase.duration, if phase.duration > 0.0 { (end - begin) / phase.duration } else { 0.0 }));
+        }
+    }
+    Ok(pieces)
+}
