@@ -41,6 +41,7 @@ pub(super) struct Forecast {
 /// A robot that waits for ever.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct DeadlockedRobot {
+    pub(super) robot: usize,
     /// Index of the region at which it waits, among those of the changed robot.
     pub(super) region: Option<usize>,
 }
@@ -179,7 +180,8 @@ impl<'t, 'w: 't> ForecastInput<'t, 'w> {
                 open.append(&mut waiting[place]);
             }
         }
-        let stuck: Vec<DeadlockedRobot> = taken.iter().filter_map(AdvancingRobot::stuck).collect();
+        let stuck: Vec<DeadlockedRobot> =
+            robots.iter().zip(&taken).filter_map(|(&robot, taken)| taken.stuck(robot)).collect();
         if !stuck.is_empty() {
             return Err(stuck);
         }
@@ -302,8 +304,8 @@ impl<'r> AdvancingRobot<'r> {
         self.find_next_gate();
     }
 
-    fn stuck(&self) -> Option<DeadlockedRobot> {
+    fn stuck(&self, robot: usize) -> Option<DeadlockedRobot> {
         let (_, _, is_left) = self.ahead()?;
-        self.gate().filter(|_| !is_left).map(|(wait, _)| DeadlockedRobot { region: wait.changed_region })
+        self.gate().filter(|_| !is_left).map(|(wait, _)| DeadlockedRobot { robot, region: wait.changed_region })
     }
 }

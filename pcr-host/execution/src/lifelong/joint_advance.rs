@@ -93,7 +93,7 @@ impl LifelongState {
         let is_moved = vec![false; self.robots.len()];
         let due = |robot: &usize| {
             let is_due = self.missions[*robot].is_some_and(|mission| mission.next_try <= now);
-            is_due && self.needs_way(*robot) && Push::new(self, &is_moved, *robot).candidates(*robot).is_empty()
+            is_due && self.needs_way(*robot) && Push::new(self, &is_moved, *robot, now).candidates(*robot).is_empty()
         };
         let waiting: Vec<usize> = self.waiting().into_iter().filter(due).take(TRIES).collect();
         for robot in waiting {
@@ -114,7 +114,7 @@ impl LifelongState {
                 continue;
             }
             let begin = Instant::now();
-            let batch = Push::of(self, &is_moved, robot);
+            let batch = Push::of(self, &is_moved, robot, now);
             let found = batch.as_ref().and_then(|batch| self.admit_together(batch, now));
             if batch.is_some() {
                 self.decisions.push(begin.elapsed());
@@ -134,7 +134,7 @@ impl LifelongState {
     /// Whether a robot has no goal on its way and soon comes to the end of it.
     fn needs_way(&self, robot: usize) -> bool {
         let it = &self.robots[robot];
-        it.way.goals.is_empty() && it.way.length() - it.stop() <= LOOK
+        it.cut.is_none() && it.way.goals.is_empty() && it.way.length() - it.stop() <= LOOK
     }
 
     /// The whole present way of a robot, from where it is.
@@ -201,9 +201,9 @@ impl LifelongState {
     fn take_together(&mut self, batch: &[Stretch], found: JointAdmission, now: f64) {
         let JointAdmission { robots, book, forecast, kept } = found;
         for (Stretch { robot, .. }, kept) in batch.iter().zip(kept) {
-            let ends = [&self.robots[*robot], &robots[*robot]].map(|it| it.way.end());
-            self.site.covers(ends[0]).iter().for_each(|&atom| self.parked[atom] -= 1);
-            self.site.covers(ends[1]).iter().for_each(|&atom| self.parked[atom] += 1);
+            let end = robots[*robot].way.end();
+            self.end_covers(*robot).iter().for_each(|&atom| self.parked[atom] -= 1);
+            self.site.covers(end).iter().for_each(|&atom| self.parked[atom] += 1);
             self.locks.exchange(*robot, kept);
         }
         (self.robots, self.book) = (robots, book);
@@ -225,6 +225,7 @@ impl LifelongState {
 /// A search for robots that make way for one another.
 struct Push<'s> {
     state: &'s LifelongState,
+    now: f64,
     /// The robot with the oldest mission, for which it is made.
     root: usize,
     /// Robots that were asked, or must not be.
@@ -236,14 +237,14 @@ struct Push<'s> {
 }
 
 impl<'s> Push<'s> {
-    fn new(state: &'s LifelongState, is_moved: &[bool], root: usize) -> Self {
+    fn new(state: &'s LifelongState, is_moved: &[bool], root: usize, now: f64) -> Self {
         let (is_asked, moves) = (is_moved.to_vec(), vec![None; is_moved.len()]);
-        Self { state, root, is_asked, moves, asked: Vec::new() }
+        Self { state, now, root, is_asked, moves, asked: Vec::new() }
     }
 
     /// More way for a robot towards its goal, and for all robots that have to make way for it.
-    fn of(state: &'s LifelongState, is_moved: &[bool], root: usize) -> Option<Vec<Stretch>> {
-        let mut push = Self::new(state, is_moved, root);
+    fn of(state: &'s LifelongState, is_moved: &[bool], root: usize, now: f64) -> Option<Vec<Stretch>> {
+        let mut push = Self::new(state, is_moved, root, now);
         push.advances(root).then(|| {
             let moves = push.asked.iter().filter_map(|&robot| Some((robot, push.moves[robot]?)));
             // Whoever makes way goes first.
@@ -268,7 +269,7 @@ impl<'s> Push<'s> {
     /// The atoms on which a robot may go on, the best for its own mission first. The robot for which all others make way only goes
     /// nearer to its goal.
     fn candidates(&self, robot: usize) -> Vec<usize> {
-        let LifelongState { site, network, missions, joint, .. } = self.state;
+        let LifelongState { site, network, missions, joint, robots, closed, .. } = self.state;
         let pose = self.state.whole(robot).end_pose;
         let times = missions[robot].map(|mission| network.times(site, mission.goal));
         // A robot without a mission goes anywhere.
@@ -279,7 +280,10 @@ impl<'s> Push<'s> {
             let heading = it.headings.map(|headings| headings[1]).or(pose.heading);
             (left(DeparturePose { node: it.ends[1], heading }), it.length / it.speed)
         };
-        let open = site.leaving[pose.node].iter().filter(|&&atom| joint.is_round[atom]);
+        if robots[robot].cut.is_some() {
+            return Vec::new();
+        }
+        let open = site.leaving[pose.node].iter().filter(|&&atom| joint.is_round[atom] && closed[atom] == 0);
         let mut found: Vec<(f64, f64, usize)> = open.map(|&atom| (cost(atom).0, cost(atom).1, atom)).collect();
         if robot == self.root {
             found.retain(|it| it.0 < here);
@@ -301,8 +305,7 @@ impl<'s> Push<'s> {
         self.moves[robot] = Some(atom);
         self.asked.push(robot);
         for (other, it) in robots.iter().enumerate() {
-            let end = it.way.end();
-            let is_in_the_way = other != robot && site.passes(atom, end);
+            let is_in_the_way = other != robot && it.ends_on(site, atom);
             if !is_in_the_way || self.moves[other].is_some() {
                 continue;
             }
@@ -317,6 +320,6 @@ impl<'s> Push<'s> {
     fn makes_way(&self, robot: usize) -> bool {
         let LifelongState { robots, missions, .. } = self.state;
         let since = |robot: usize| missions[robot].map_or(f64::INFINITY, |mission| mission.rank);
-        robots[robot].way.goals.is_empty() && since(self.root) <= since(robot)
+        !self.state.is_fixed(robot, self.now) && robots[robot].way.goals.is_empty() && since(self.root) <= since(robot)
     }
 }

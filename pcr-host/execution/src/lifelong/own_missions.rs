@@ -3,6 +3,7 @@
 //! A mission is a list of stops. The vehicle gets them one after the other, each as a mission of its own, with the next one known
 //! before it is at the present one.
 
+use super::own_events::OwnEvent;
 use super::route_graph::DeparturePose;
 use super::run_state::{LifelongState, RobotMission};
 use pcr_formats::import::Layout;
@@ -57,6 +58,9 @@ pub(super) struct OwnMissions {
     /// The mission of each vehicle.
     pub(super) current: Vec<Option<usize>>,
     pub(super) waits: Vec<OwnWait>,
+    /// What became of the closures and breakdowns of the file.
+    pub(super) closures: Vec<OwnEvent>,
+    pub(super) breakdowns: Vec<OwnEvent>,
     /// Time at which a stop was reached for the last time \[s\].
     pub(super) progress: f64,
     /// Names of the nodes and edges of the layout.
@@ -76,7 +80,10 @@ impl OwnMissions {
         let (missions, current) = (missions.collect(), vec![None; fleet.vehicles.len()]);
         let nodes = layout.nodes.iter().map(|node| node.id.to_string()).collect();
         let edges = layout.edges.iter().map(|edge| edge.id.to_string()).collect();
-        Self { missions, current, fleet: fleet.clone(), waits: Vec::new(), progress: 0.0, nodes, edges }
+        let [closures, breakdowns] =
+            [fleet.closures.len(), fleet.breakdowns.len()].map(|count| vec![OwnEvent::default(); count]);
+        let (fleet, waits, progress) = (fleet.clone(), Vec::new(), 0.0);
+        Self { fleet, missions, current, waits, closures, breakdowns, progress, nodes, edges }
     }
 
     /// Number of missions that are done or given up.
@@ -141,7 +148,7 @@ impl LifelongState {
                 own.current[robot].is_none()
                     && self.missions[robot].is_none()
                     && request.vehicle.is_none_or(|vehicle| vehicle == robot)
-                    && self.is_able(robot)
+                    && self.is_able(robot, now)
             });
             let times = idle.map(|robot| (self.time_to(robot, &request.stops), robot));
             let nearest = times.filter(|time| time.0 < f64::INFINITY).min_by(|a, b| a.0.total_cmp(&b.0));
@@ -152,7 +159,8 @@ impl LifelongState {
             }
         }
         for robot in 0..self.robots.len() {
-            let Some(mission) = own.current[robot].filter(|_| self.missions[robot].is_none()) else { continue };
+            let is_free = self.missions[robot].is_none() && self.is_able(robot, now);
+            let Some(mission) = own.current[robot].filter(|_| is_free) else { continue };
             let mission = &own.missions[mission];
             let Some(&stop) = mission.request.stops.get(mission.reached.len()) else { continue };
             self.missions[robot] = Some(RobotMission {
@@ -189,8 +197,8 @@ impl LifelongState {
     }
 
     /// Whether a vehicle can drive.
-    fn is_able(&self, robot: usize) -> bool {
-        self.robots[robot].stopped_until < f64::INFINITY
+    fn is_able(&self, robot: usize, now: f64) -> bool {
+        self.robots[robot].stopped_until <= now
     }
 
     /// Notes that a vehicle has reached the next stop of its mission.

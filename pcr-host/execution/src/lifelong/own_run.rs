@@ -1,10 +1,11 @@
 //! A run of the missions of a file: until all are done or given up, without random delays.
 
 use super::endpoints::{Endpoints, WellFormedness};
+use super::own_events::{ClosureEffect, OwnEvent};
 use super::own_missions::{MissionOutcome, OwnMission, OwnMissions, OwnWait};
 use super::random_draws::STEP;
 use super::robot::LifelongRobot;
-use super::route_graph::{RouteGraph, VehicleLayer};
+use super::route_graph::{DeparturePose, RouteGraph, VehicleLayer};
 use super::run_state::LifelongState;
 use super::trajectory;
 use super::{CoordinationMethod, DelayModel, LifelongOptions};
@@ -27,6 +28,10 @@ pub struct MissionRun {
     pub waits: Vec<MissionWait>,
     /// The whole run as a scenario, with an agent for each vehicle.
     pub scenario: Scenario,
+    /// What each closure did, in the order of the file.
+    pub closures: Vec<EventResult>,
+    /// What each breakdown did, in the order of the file.
+    pub breakdowns: Vec<EventResult>,
     /// For each vehicle the node of the layout where it stands in the end; `None` on an edge.
     pub ends: Vec<Option<usize>>,
     /// Time at which the last vehicle stands \[s\].
@@ -44,6 +49,17 @@ pub struct MissionResult {
     pub reached: Vec<f64>,
     /// Reason why it was given up.
     pub reason: Option<String>,
+}
+
+/// What a closure or breakdown did.
+#[derive(Clone, Debug, PartialEq)]
+pub struct EventResult {
+    /// Whether it began before the run was over.
+    pub is_begun: bool,
+    /// Vehicles on whose routes it was, and what became of them.
+    pub effects: Vec<(usize, ClosureEffect)>,
+    /// Where the vehicle that broke down stands: the id of its edge, `None` at a node, and the point \[m\].
+    pub place: Option<(Option<String>, [f64; 2])>,
 }
 
 /// A vehicle that waited for another one.
@@ -77,7 +93,7 @@ pub fn run_missions(
         let now = tick as f64 * STEP;
         let stand = run.robots.iter().all(LifelongRobot::has_arrived);
         let Some(own) = &run.own else { break };
-        let is_to_come = own.is_to_come(now);
+        let is_to_come = own.is_to_come(now) || own.is_changing(now);
         if own.is_over() && stand {
             break;
         }
@@ -90,6 +106,7 @@ pub fn run_missions(
         if tick % 100 == 0 {
             told(now, run.own.as_ref().map_or(0, OwnMissions::over));
         }
+        run.change_world(now);
         run.give(now);
         run.decide(now);
         run.note_begun(now);
@@ -145,46 +162,90 @@ impl LifelongState {
     }
 
     /// Gives up the missions that no vehicle can do, whatever the others do.
-    fn refuse_impossible(&mut self) {
+    pub(super) fn refuse_impossible(&mut self) {
         let Some(own) = &self.own else { return };
         let reasons: Vec<(usize, String)> = own
             .missions
             .iter()
             .enumerate()
-            .filter(|(_, mission)| mission.outcome == MissionOutcome::Open)
+            .filter(|(_, mission)| matches!(mission.outcome, MissionOutcome::Open | MissionOutcome::Begun))
             .filter_map(|(place, mission)| Some((place, self.why_impossible(own, mission)?)))
             .collect();
         if let Some(own) = &mut self.own {
-            reasons.into_iter().for_each(|(mission, why)| own.refuse(mission, why));
+            for (mission, why) in reasons {
+                let vehicle = own.current.iter().position(|current| *current == Some(mission));
+                own.refuse(mission, why);
+                if let Some(robot) = vehicle {
+                    self.missions[robot] = None;
+                    self.robots[robot].way.goals.clear();
+                }
+            }
         }
     }
 
     /// The reason why no vehicle can do a mission from where it is now; `None` if one can.
     fn why_impossible(&self, own: &OwnMissions, mission: &OwnMission) -> Option<String> {
         let stops = &mission.request.stops[mission.reached.len().min(mission.request.stops.len())..];
-        let vehicles: Vec<usize> = match mission.request.vehicle {
+        // Whoever has begun it goes on.
+        let vehicles: Vec<usize> = match mission.vehicle.or(mission.request.vehicle) {
             Some(vehicle) => vec![vehicle],
             None => (0..self.robots.len()).collect(),
         };
+        let blocked = self.blocked_for_ever(own);
         if vehicles.is_empty() {
             return Some("there is no vehicle".into());
         }
         let mut reasons = Vec::new();
         for vehicle in vehicles {
-            let lost = (1..=stops.len()).find(|&count| self.time_to(vehicle, &stops[..count]) == f64::INFINITY)?;
             let id = &own.fleet.vehicles[vehicle].id;
+            if self.robots[vehicle].stopped_until == f64::INFINITY {
+                reasons.push(format!("vehicle {id} broke down"));
+                continue;
+            }
+            let lost = (1..=stops.len()).find(|&count| !self.reaches(vehicle, &stops[..count], &blocked))?;
             let from = match lost.checked_sub(2) {
                 Some(before) => format!("node {}", self.name_of(stops[before])),
                 None => "where it is".into(),
             };
             let forbidden = &own.fleet.vehicles[vehicle].forbidden;
-            let why = if forbidden.is_empty() { "" } else { " without the edges that are forbidden to it" };
+            let mut why = if forbidden.is_empty() { "" } else { " without the edges that are forbidden to it" };
+            if self.reaches(vehicle, &stops[..lost], &[]) {
+                why = " without what is closed, or in the way of a vehicle that broke down, for ever";
+            }
             reasons.push(format!(
                 "vehicle {id}: no route leads from {from} to node {}{why}",
                 self.name_of(stops[lost - 1])
             ));
         }
         Some(reasons.join("; "))
+    }
+
+    /// For each atom whether it is closed for ever, or a vehicle stands on it that never drives again.
+    fn blocked_for_ever(&self, own: &OwnMissions) -> Vec<bool> {
+        let mut blocked = vec![false; self.site.atoms.len()];
+        let closures = own.fleet.closures.iter().zip(&own.closures);
+        for (closure, _) in closures.filter(|(closure, event)| event.is_begun && closure.until.is_none()) {
+            self.closed_atoms(closure.element).into_iter().for_each(|atom| blocked[atom] = true);
+        }
+        for (robot, it) in self.robots.iter().enumerate() {
+            if it.stopped_until == f64::INFINITY {
+                self.end_covers(robot).iter().for_each(|&atom| blocked[atom] = true);
+            }
+        }
+        blocked
+    }
+
+    /// Whether routes lead a vehicle to all of these nodes of the layout, one after the other, over atoms that are not blocked.
+    fn reaches(&self, robot: usize, stops: &[usize], blocked: &[bool]) -> bool {
+        let it = &self.robots[robot];
+        let mut from = it.way.committed_part(&self.site, it.at, it.stop(), it.turned).end_pose;
+        let toll = |atom: usize| if blocked.get(atom) == Some(&true) { f64::INFINITY } else { 0.0 };
+        stops.iter().all(|&stop| {
+            let node = self.node_of_layer(robot, stop);
+            let found = self.network.quickest(&self.site, from, toll, |other| other == node, Some(node), 1);
+            from = DeparturePose { node, heading: None };
+            !found.is_empty()
+        })
     }
 
     /// The name of a node of the layout.
@@ -284,6 +345,13 @@ impl LifelongState {
             edge: it.edge.map(|edge| own.edges[edge].clone()),
             point: it.point,
         });
+        let event = |event: &OwnEvent| EventResult {
+            is_begun: event.is_begun,
+            effects: event.effects.clone(),
+            place: event.place.map(|(edge, point)| (edge.map(|edge| own.edges[edge].clone()), point)),
+        };
+        let closures = own.closures.iter().map(event).collect();
+        let breakdowns = own.breakdowns.iter().map(event).collect();
         let (missions, mut waits): (Vec<_>, Vec<MissionWait>) = (missions.collect(), waits.collect());
         waits.sort_by(|a, b| a.time[0].total_cmp(&b.time[0]).then(a.vehicle.cmp(&b.vehicle)));
         let mut agents = Vec::new();
@@ -294,6 +362,7 @@ impl LifelongState {
         }
         let end = |robot: &LifelongRobot| robot.way.node(&self.site, robot.at).map(|node| node % self.site.places());
         let ends = self.robots.iter().map(end).collect();
-        Ok(MissionRun { missions, waits, scenario: Scenario::new(name, agents), ends, duration })
+        let scenario = Scenario::new(name, agents);
+        Ok(MissionRun { missions, waits, scenario, closures, breakdowns, ends, duration })
     }
 }

@@ -41,6 +41,8 @@ pub(super) struct PlanningContext<'s> {
     pub(super) parked: &'s [u16],
     /// Whether robots may stay at their goals if there is no end for them.
     pub(super) stays: bool,
+    /// For each atom by how many closures it is closed.
+    pub(super) closed: &'s [u16],
     pub(super) time: f64,
     /// In a large fleet: the times that the other robots keep while a decision about one is made.
     pub(super) timetable: Option<&'s Timetable>,
@@ -84,7 +86,11 @@ impl PlanningContext<'_> {
     /// Whether no other robot stands for good where a robot at the node would touch it, and the node is on no route reserved
     /// for others.
     pub(super) fn is_free(&self, robot: usize, node: usize) -> bool {
-        let own = self.site.collide(self.robots[robot].way.end(), node);
+        let it = &self.robots[robot];
+        let own = match &it.cut {
+            Some(cut) => cut.contains(&self.site.standing(node)),
+            None => self.site.collide(it.way.end(), node),
+        };
         let count = usize::from(self.parked[self.site.standing(node)]);
         count <= usize::from(own) && !self.is_reserved(robot, node)
     }
@@ -117,8 +123,11 @@ impl PlanningContext<'_> {
         towards: Option<usize>,
         count: usize,
     ) -> Vec<Vec<usize>> {
-        let own = self.site.covers(self.robots[robot].way.end());
+        let own = self.robots[robot].end_covers(self.site);
         let toll = |atom: usize| {
+            if self.closed[atom] > 0 {
+                return f64::INFINITY;
+            }
             let mut parked = self.parked[atom];
             if parked > 0 && own.contains(&atom) {
                 parked -= 1;

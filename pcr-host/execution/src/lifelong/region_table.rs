@@ -246,7 +246,9 @@ impl RegionTable {
                         Interval::new(lo + offsets[side], hi + offsets[side])
                     };
                     let hull = [shifted(0), shifted(1)];
-                    if hull[0].hi >= at && hull[1].hi >= robots[other].at {
+                    let is_ahead = hull[0].hi >= at && hull[1].hi >= robots[other].at;
+                    // A way may end within an atom, before it touches.
+                    if is_ahead && hull[0].lo <= way.length() && hull[1].lo <= robots[other].way.length() {
                         ties.push(TouchingElements { other, places: [place, their], hull, contact, group: 0 });
                     }
                 }

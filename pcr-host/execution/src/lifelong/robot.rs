@@ -2,6 +2,8 @@
 
 use super::kinematic_limits::KinematicLimits;
 use super::route::Route;
+use super::route_graph::RouteGraph;
+use std::rc::Rc;
 
 /// Least distance at which a robot stands before its hold, for rounding \[m\].
 pub(super) const SHORT: f64 = 1e-6;
@@ -23,6 +25,8 @@ pub(super) struct RobotPhase {
 pub(super) struct LifelongRobot {
     pub(super) way: Route,
     pub(super) abilities: KinematicLimits,
+    /// If its way ends on an edge: the atoms on which others would touch it there.
+    pub(super) cut: Option<Rc<[usize]>>,
     /// Travelled length \[m\] and speed \[m/s\].
     pub(super) at: f64,
     pub(super) speed: f64,
@@ -52,6 +56,7 @@ impl LifelongRobot {
         Self {
             way,
             abilities,
+            cut: None,
             at: 0.0,
             speed: 0.0,
             turned: 0,
@@ -123,9 +128,7 @@ impl LifelongRobot {
         if !comes {
             return false;
         }
-        if self.at > before {
-            self.stops.push((time + step, self.trail.len(), self.along()));
-        }
+        self.stops.push((time + step, self.trail.len(), self.along()));
         // At a goal it may get another way before it turns for this one.
         if self.way.goals.first().is_some_and(|&goal| goal <= next) {
             self.way.goals.remove(0);
@@ -224,6 +227,19 @@ impl LifelongRobot {
         let passed = |at: f64| if goes_on { at < self.at + NEAR } else { at < self.at };
         self.turned = way.corners.iter().filter(|corner| passed(corner.at)).count();
         self.way = way;
+    }
+
+    /// The atoms on which others would touch it at the end of its way.
+    pub(super) fn end_covers(&self, site: &RouteGraph) -> Rc<[usize]> {
+        self.cut.clone().unwrap_or_else(|| site.covers(self.way.end()))
+    }
+
+    /// Whether another robot on an atom would touch it at the end of its way.
+    pub(super) fn ends_on(&self, site: &RouteGraph, atom: usize) -> bool {
+        match &self.cut {
+            Some(cut) => cut.contains(&atom),
+            None => site.passes(atom, self.way.end()),
+        }
     }
 
     /// Whether it stands at the end of its way.

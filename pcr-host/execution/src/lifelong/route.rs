@@ -29,6 +29,8 @@ pub(super) struct Route {
     end: usize,
     /// Heading of a robot at its start, if it is known \[rad\].
     heading: Option<f64>,
+    /// Whether it ends within its last atom.
+    pub(super) is_cut: bool,
     /// The atoms of a robot that stands at its start, and at its end.
     pub(super) poses: [usize; 2],
 }
@@ -92,7 +94,25 @@ impl Route {
         let start = site.atoms[atoms[0]].ends[0];
         let first = from.heading.or_else(|| site.atoms[atoms[0]].headings.map(|headings| headings[0]));
         let poses = [site.pose(start, first), site.pose(end, heading)];
-        Self { atoms, offsets, speeds, times, corners, goals, end, heading: from.heading, poses }
+        Self { atoms, offsets, speeds, times, corners, goals, end, heading: from.heading, is_cut: false, poses }
+    }
+
+    /// The same way up to a length, which may be within an atom.
+    pub(super) fn cut(&self, site: &RouteGraph, length: f64) -> Self {
+        let last = self.atom(length);
+        let mut cut = self.clone();
+        cut.atoms.truncate(last + 1);
+        cut.speeds.truncate(last + 1);
+        cut.offsets.truncate(last + 2);
+        cut.times.truncate(last + 2);
+        cut.times[last + 1] = self.time(length);
+        cut.offsets[last + 1] = length;
+        cut.corners.retain(|corner| corner.at < length);
+        cut.goals.retain(|&goal| goal <= length);
+        cut.end = site.atoms[self.atoms[last]].ends[1];
+        cut.poses[1] = site.pose(cut.end, self.heading(site, last + 1));
+        cut.is_cut = self.offsets[last + 1] != length;
+        cut
     }
 
     pub(super) fn length(&self) -> f64 {
@@ -173,6 +193,9 @@ impl Route {
     /// The node at exactly this length, if there is one.
     pub(super) fn node(&self, site: &RouteGraph, length: f64) -> Option<usize> {
         let k = self.offsets.iter().position(|&offset| offset == length)?;
+        if self.is_cut && k == self.atoms.len() {
+            return None;
+        }
         Some(self.atoms.get(k).map_or(self.end, |&next| site.atoms[next].ends[0]))
     }
 
@@ -198,7 +221,8 @@ impl Route {
     pub(super) fn committed_part(&self, site: &RouteGraph, at: f64, stop: f64, turned: usize) -> CommittedRoute {
         let count = self.atoms.len();
         // If it stands at a node, the new way begins there.
-        if let Some(k) = self.offsets.iter().position(|&offset| offset == at && offset == stop) {
+        let node = self.offsets.iter().position(|&offset| offset == at && offset == stop);
+        if let Some(k) = node.filter(|&k| !self.is_cut || k < count) {
             let k = k.min(count);
             let node = if k == count { self.end } else { site.atoms[self.atoms[k]].ends[0] };
             let corner = turned.checked_sub(1).and_then(|last| self.corners.get(last));

@@ -79,6 +79,10 @@ pub(super) struct LifelongState {
     pub(super) joint: JointPhase,
     /// Tasks that are not done yet, if the robots share them.
     pub(super) tasks: Option<TaskQueue>,
+    /// For each atom by how many closures it is closed.
+    pub(super) closed: Vec<u16>,
+    /// Time of the next search for routes of vehicles that stopped on an edge \[s\].
+    pub(super) freed: f64,
     /// Missions of a file, instead of random ones.
     pub(super) own: Option<OwnMissions>,
 }
@@ -158,6 +162,8 @@ impl LifelongState {
             time: TimeShares::default(),
         };
         Ok(Self {
+            closed: vec![0; site.atoms.len()],
+            freed: 0.0,
             book: RegionTable::new(&site, &robots),
             locks: RouteReservations::new(count),
             network,
@@ -262,6 +268,7 @@ impl LifelongState {
             reserved: &self.reserved,
             parked: &self.parked,
             stays: self.own.is_some(),
+            closed: &self.closed,
             time: now,
             timetable: self.is_large().then_some(&self.timetable),
             method: self.request.method,
@@ -274,8 +281,9 @@ impl LifelongState {
         if let Some(level) = self.reserved.iter().position(|route| route.0 == robot) {
             self.reserved.truncate(level);
         }
+        self.end_covers(robot).iter().for_each(|&atom| self.parked[atom] -= 1);
         let it = &mut self.robots[robot];
-        self.site.covers(it.way.end()).iter().for_each(|&atom| self.parked[atom] -= 1);
+        it.cut = None;
         self.site.covers(way.end()).iter().for_each(|&atom| self.parked[atom] += 1);
         self.book.exchange(robot, &it.way, &way, regions);
         self.locks.exchange(robot, kept);

@@ -65,7 +65,8 @@ impl LifelongState {
         /// Time between two attempts for the same robot \[s\].
         const AGAIN: f64 = 2.0;
         let idle = |robot: &usize| {
-            self.robots[*robot].has_arrived()
+            !self.is_fixed(*robot, now)
+                && self.robots[*robot].has_arrived()
                 && self.missions[*robot].is_none_or(|it| !it.admitted)
                 && now - self.reviewed[*robot] > AGAIN
                 && self.ends.harm(&self.site)[self.robots[*robot].way.end()] > 0
@@ -149,7 +150,10 @@ impl LifelongState {
                 if moved >= MOVES {
                     return;
                 }
-                if self.missions[by].is_some_and(|mission| mission.admitted) || !self.scene(now).is_on_reserved(by) {
+                if self.is_fixed(by, now)
+                    || self.missions[by].is_some_and(|mission| mission.admitted)
+                    || !self.scene(now).is_on_reserved(by)
+                {
                     continue;
                 }
                 if self.is_begun(by, now) {

@@ -18,7 +18,7 @@ impl PlanningContext<'_> {
         let mut found = Vec::new();
         for &atom in route.iter().filter(|&&atom| self.parked[atom] > 0) {
             for (other, it) in self.robots.iter().enumerate() {
-                if other != robot && !found.contains(&other) && self.site.passes(atom, it.way.end()) {
+                if other != robot && !found.contains(&other) && it.ends_on(self.site, atom) {
                     found.push(other);
                 }
             }

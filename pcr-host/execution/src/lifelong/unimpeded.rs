@@ -33,6 +33,7 @@ impl LifelongState {
                 done += 1;
             }
             robot.done.clear();
+            robot.stops.clear();
         }
         done
     }
