@@ -19,6 +19,7 @@ mod large;
 mod lines;
 mod locks;
 mod margins;
+mod missions;
 mod outlines;
 mod output;
 mod plan;

@@ -58,6 +58,16 @@ fn every_output_fits_its_schema() {
     let stuck = file("schema", "stuck.json", stuck.to_string());
     let (plant, blocks) = (real("opentcs/Demo-01.xml"), file("schema", "blocks.xml", String::new()));
     let mut formats: Vec<String> = Vec::new();
+    let day = r#"{"kind": "vehicle", "id": 1, "start": 0, "radius": 0.3}
+        {"kind": "vehicle", "id": 2, "start": 5, "radius": 0.3}
+        {"id": 1, "to": 5, "via": [3], "due": 9}
+        {"id": 2, "to": 0, "vehicle": 2}
+        {"kind": "closure", "node": 7, "at": 3, "until": 9}
+        {"kind": "breakdown", "vehicle": 1, "at": 5}"#;
+    let lines: Vec<Value> = day.lines().map(|line| serde_json::from_str(line).unwrap()).collect();
+    assert_eq!(lines.iter().flat_map(|line| faults(&closed(schema("pcr-mission-lines")), line)).count(), 0);
+    formats.push("pcr-mission-lines".into());
+    let day = file("schema", "day.jsonl", day);
     for arguments in [
         &["regions", PAPER, "--slices", "2", "--margin", "0.05"][..],
         &["regions", &labelled],
@@ -83,6 +93,7 @@ fn every_output_fits_its_schema() {
         &["locks", &plant, "--radius", "0.9", "--audit"],
         &["traffic", &layout, "--radius", "0.3", "--agents", "5"],
         &["traffic", &layout, "--radius", "0.3", "--agents", "3", "--hours", "0.01", "--compare"],
+        &["traffic", &layout, "--missions", &day],
         &["nodes", &layout],
         &["nodes", &lif],
         &["nodes", &real("opendrive/Town02.planview.xodr")],

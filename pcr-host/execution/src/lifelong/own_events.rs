@@ -253,6 +253,7 @@ impl LifelongState {
                 self.reroute(robot, now);
             }
         }
+        self.end_circles(now);
     }
 
     /// Whether a vehicle cannot make way: it broke down, or stands on an edge.

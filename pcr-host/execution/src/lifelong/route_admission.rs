@@ -134,9 +134,7 @@ impl PlanningContext<'_> {
         let [least, most] = FORECASTS;
         let (alone, taken, budget) = match self.timetable {
             Some(_) => (Vec::new(), self.waiting_for(robot), FEW),
-            None => {
-                (alone().unwrap_or_default(), Vec::new(), (WORK / waits.len_without(robot).max(1)).clamp(least, most))
-            }
+            None => (alone().ok()?, Vec::new(), (WORK / waits.len_without(robot).max(1)).clamp(least, most)),
         };
         let (base, taken) = (self.timetable.map_or(&alone[..], |timetable| &timetable.lines), &taken[..]);
         let budget = &Cell::new(budget);

@@ -16,8 +16,11 @@ const NEAR: f64 = 1e-7;
 /// Time that is rounding and nothing else \[s\].
 const SHORT: f64 = 1e-9;
 
+/// Longest time of a turn of a disc \[s\]: a slower one would be lost in the rounding of speeds.
+const SLOWEST: f64 = 5.0;
+
 /// Angle that is rounding and nothing else \[rad\].
-const NO_TURN: f64 = 1e-9;
+const NO_TURN: f64 = 1e-8;
 
 /// A segment of the scenario.
 struct DrivenSegment {
@@ -34,12 +37,15 @@ struct DrivenPath {
     start: Option<[f64; 3]>,
     at: [f64; 2],
     heading: f64,
+    /// Pose before the last segment.
+    before: ([f64; 2], f64),
     driven: f64,
     segments: Vec<DrivenSegment>,
 }
 
 impl DrivenPath {
     fn push(&mut self, shape: PathSegment, driven: f64, is_standing_turn: bool) {
+        self.before = (self.at, self.heading);
         let placed = PlacedSegment { start: self.at, heading: self.heading, shape };
         (self.at, self.heading) = (placed.end(), placed.heading_at_end());
         let ends = [self.driven, self.driven + driven];
@@ -47,10 +53,26 @@ impl DrivenPath {
         self.segments.push(DrivenSegment { shape, driven: ends, is_standing_turn });
     }
 
-    /// Turns to a heading; the path begins here if it has not begun.
-    fn face(&mut self, at: [f64; 2], heading: f64) {
+    /// The path begins here if it has not begun.
+    fn begin(&mut self, at: [f64; 2], heading: f64) {
         if self.start.is_none() {
             (self.at, self.heading, self.start) = (at, heading, Some([at[0], at[1], heading]));
+        }
+    }
+
+    /// Turns to a heading; the path begins here if it has not begun. A turn before takes what is missing by rounding.
+    fn face(&mut self, at: [f64; 2], heading: f64) {
+        self.begin(at, heading);
+        let missing = wrapped(heading - self.heading);
+        if missing != 0.0
+            && missing.abs() < STRAIGHT
+            && let Some(DrivenSegment { shape: PathSegment::Arc { radius: TURN, sweep }, driven, is_standing_turn }) =
+                self.segments.pop_if(|last| matches!(last.shape, PathSegment::Arc { radius: TURN, .. }))
+        {
+            (self.at, self.heading) = self.before;
+            self.driven = driven[0];
+            let shape = PathSegment::Arc { radius: TURN, sweep: sweep + missing };
+            self.push(shape, driven[1] - driven[0], is_standing_turn);
         }
         let sweep = wrapped(heading - self.heading);
         if sweep.abs() > NO_TURN {
@@ -154,11 +176,26 @@ fn add(path: &mut DrivenPath, site: &RouteGraph, atom: usize, mut left: f64) {
                 path.push(PathSegment::Arc { radius, sweep: signed(keep / radius, turn) }, keep, false);
             }
             Curve::Pivot { lever, turn } => {
-                path.face(point(0.0), segment.heading_at(0.0).0);
-                path.push(PathSegment::Arc { radius: TURN, sweep: signed(keep / lever, turn) }, keep, false);
+                path.begin(point(0.0), segment.heading_at(0.0).0);
+                let missing = wrapped(segment.heading_at(0.0).0 - path.heading);
+                let sweep = signed(keep / lever, turn) + missing;
+                path.push(PathSegment::Arc { radius: TURN, sweep }, keep, false);
             }
         }
     }
+}
+
+/// Durations \[s\] and accelerations \[m/s²\] of motions with these durations and speeds at their ends. A reader sums them up, so each
+/// takes back the rounding of those before it: a turn in place is slower than what rounding would leave after a long way.
+fn balanced(motions: Vec<(f64, f64)>) -> Vec<(f64, f64)> {
+    let mut speed = 0.0;
+    let piece = |(duration, end): (f64, f64)| {
+        let gain = (end - speed) / duration;
+        // At a stop a reader takes what rounding leaves for none.
+        speed = if end == 0.0 { 0.0 } else { speed + gain * duration };
+        (duration, gain)
+    };
+    motions.into_iter().filter(|motion| motion.0 > 0.0).map(piece).collect()
 }
 
 /// Durations \[s\] and accelerations \[m/s²\] along the path.
@@ -211,8 +248,8 @@ fn pieces(path: &DrivenPath, robot: &LifelongRobot, before: &[f64], length: f64)
             if stood <= 0.0 {
                 return Err("a turn in place without a stop".into());
             }
-            let gain = 4.0 * turns / (stood * stood);
-            pieces.extend([(0.5 * stood, gain), (0.5 * stood, -gain)]);
+            let time = stood.min(SLOWEST);
+            pieces.extend([(0.5 * time, 2.0 * turns / time), (0.5 * time, 0.0), (stood - time, 0.0)]);
         } else if stood > 0.0 {
             pieces.push((stood, 0.0));
         }
@@ -222,9 +259,8 @@ fn pieces(path: &DrivenPath, robot: &LifelongRobot, before: &[f64], length: f64)
         }
         let scale = if driven > 0.0 { ahead / driven } else { 0.0 };
         for phase in done {
-            let [begin, end] = phase.speed.map(|speed| speed * scale);
-            pieces.push((phase.duration, if phase.duration > 0.0 { (end - begin) / phase.duration } else { 0.0 }));
+            pieces.push((phase.duration, phase.speed[1] * scale));
         }
     }
-    Ok(pieces)
+    Ok(balanced(pieces))
 }

@@ -1,0 +1,115 @@
+//! `pcr traffic --missions`.
+
+use crate::fixture::{directory, file, run};
+use serde_json::Value;
+
+/// The route graph of nav2's warehouse.
+const WAREHOUSE: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../tests/data/real/nav2/warehouse_graph.geojson");
+
+const VEHICLES: &str = r#"{"kind": "vehicle", "id": "truck", "start": 10, "length": 1.2, "width": 0.8, "speed": 0.8}
+{"kind": "vehicle", "id": "robot", "start": 37, "radius": 0.3}
+"#;
+
+fn missions(name: &str, text: &str) -> String {
+    file("missions", name, text)
+}
+
+#[test]
+fn missions_of_a_file_are_run_and_the_run_is_a_scenario() {
+    let text = format!(
+        "{VEHICLES}{{\"id\": \"a\", \"to\": 60, \"due\": 10}}\n{{\"id\": \"b\", \"from\": 20, \"via\": [30], \"to\": 5, \"priority\": 2}}\n"
+    );
+    let (day, folder) = (missions("day.jsonl", &text), directory("missions/run"));
+    let folder = folder.to_str().unwrap();
+    let ask = ["traffic", WAREHOUSE, "--missions", &day, "--allow", "assumed-vehicle", "-o", folder, "--json", "-q"];
+    let report: Value = run(&ask).json();
+    assert_eq!(
+        (&report["done"], &report["late"], &report["certificate"]["verdict"]),
+        (&2.into(), &1.into(), &"proved".into())
+    );
+    assert_eq!(report["missions"][1]["stops"].as_array().map(Vec::len), Some(3));
+    let scenario = format!("{folder}/run.json");
+    for command in [&["check", &scenario][..], &["check", "--certify", &scenario], &["certify", &scenario]] {
+        run(&[command, &["-q"]].concat()).ok();
+    }
+    // The same as CSV, with the vehicles in a file of their own.
+    let vehicles =
+        missions("vehicles.csv", "id,start,length,width,speed,radius\ntruck,10,1.2,0.8,0.8,\nrobot,37,,,,0.3\n");
+    let csv = missions("day.csv", "id,from,via,to,due,priority\na,,,60,10,\nb,20,\"30\",5,,2\n");
+    let ask = ["traffic", WAREHOUSE, "--missions", &csv, "--vehicles", &vehicles, "--allow", "assumed-vehicle"];
+    assert_eq!(run(&[&ask[..], &["--json", "-q"]].concat()).json(), report);
+    let lines = run(&[&ask[..], &["--format", "csv", "-q"]].concat()).ok();
+    assert!(lines.starts_with("mission,vehicle,start,finish,lateness,reason\n\"a\",\"") && lines.lines().count() == 3);
+}
+
+#[test]
+fn closures_are_told_and_missions_that_are_impossible_end_with_status_1() {
+    let (day, closed) = (
+        missions("closed.jsonl", &format!("{VEHICLES}{{\"id\": \"a\", \"vehicle\": \"robot\", \"to\": 60}}\n")),
+        missions("closures.csv", "node,at,until\n60,1,\n"),
+    );
+    let ask = ["traffic", WAREHOUSE, "--missions", &day, "--closures", &closed, "--allow", "assumed-vehicle", "-q"];
+    let report = run(&[&ask[..], &["--json"]].concat()).json_of(1);
+    assert_eq!((&report["refused"], &report["closures"][0]["node"]), (&1.into(), &"60".into()));
+    let why = report["missions"][0]["reason"].as_str().unwrap();
+    assert!(why.starts_with("vehicle robot: no route leads from where it is to node 60"), "{why}");
+    let table = run(&ask[..8]);
+    assert!(
+        table.status == 1 && table.out.contains("\nmission a is not done: vehicle robot: no route"),
+        "{}",
+        table.out
+    );
+    assert!(table.out.contains("\nnode 60 closed from 1 s for ever: "), "{}", table.out);
+}
+
+#[test]
+fn what_is_wrong_in_a_file_is_told_with_its_place() {
+    for (name, text, told) in [
+        ("a.jsonl", "{\"id\": 1, \"to\": 999}", ":3:17: there is no node 999 in the layout\n"),
+        ("b.jsonl", "{\"id\": 1, \"to\": 9, \"too\": 3}", ":3:27: unknown key too; a mission has kind, id, from"),
+        ("c.jsonl", "{\"id\": 1, \"to\": 9}\n{\"id\": \"1\", \"to\": 8}", ":4:8: id: there is a mission 1 already\n"),
+        ("d.jsonl", "{\"id\": 1, \"to\": 9, \"vehicle\": \"x\"}", ":3:31: there is no vehicle x\n"),
+        ("e.jsonl", "{\"id\": 1}", ":3:1: to is missing\n"),
+        ("f.jsonl", "{\"id\": 1, \"to\": 9", ":3:18: "),
+        (
+            "g.jsonl",
+            "{\"id\": 1, \"to\": 9, \"release\": 9, \"due\": 5}",
+            ":3:41: due: it is due before it is released\n",
+        ),
+        ("h.jsonl", "{\"kind\": \"closure\", \"edge\": 1, \"at\": 0}", ":3:29: there is no edge 1 in the layout\n"),
+        ("i.jsonl", "{\"kind\": \"walk\", \"id\": 1}", ":3:10: the kind walk is none of vehicle, mission"),
+        ("j.jsonl", "{\"id\": 1, \"to\": 9, \"to\": 8}", ":3:"),
+        ("k.jsonl", "{\"id\": 1, \"to\": 9, \"priority\": 1.5}", ":3:32: priority: a whole number"),
+    ] {
+        let day = missions(name, &format!("{VEHICLES}{text}\n"));
+        let error = run(&["traffic", WAREHOUSE, "--missions", &day, "-q"]).failed(2);
+        assert!(error.starts_with(&format!("pcr: {day}{told}")), "{name}: {error}");
+    }
+    for (name, text, told) in [
+        (
+            "a.csv",
+            "kind,id,start,radius\nvehicle,v,10,0.4\nvehicle,v,11,0.4\n",
+            ":3:9: id: there is a vehicle v already\n",
+        ),
+        ("b.csv", "kind,id,start,radius\nvehicle,v,10,ten\n", ":2:14: radius: a number from"),
+        ("c.csv", "kind,id,start,radius\nvehicle,v,10,0.4,7\n", ":2:18: 5 cells, and 4 columns\n"),
+        ("d.csv", "id,to\n1,9\n", ": there is no vehicle; add lines of the kind vehicle, or --vehicles FILE\n"),
+        ("e.csv", "kind,id,start,radius\nvehicle,v,10,0.4\n", ": there is no mission\n"),
+    ] {
+        let day = missions(name, text);
+        let error = run(&["traffic", WAREHOUSE, "--missions", &day, "-q"]).failed(2);
+        assert!(error.starts_with(&format!("pcr: {day}{told}")), "{name}: {error}");
+    }
+    // A size is not guessed, and two vehicles do not stand at one place.
+    let no_size = missions("size.jsonl", "{\"kind\": \"vehicle\", \"id\": 1, \"start\": 10}\n{\"id\": 1, \"to\": 9}\n");
+    let error = run(&["traffic", WAREHOUSE, "--missions", &no_size, "-q"]).failed(2);
+    assert!(error.contains("the size of the vehicle is not in the file"), "{error}");
+    let near = missions(
+        "near.jsonl",
+        &format!(
+            "{VEHICLES}{{\"kind\": \"vehicle\", \"id\": 3, \"start\": 37, \"radius\": 0.2}}\n{{\"id\": 1, \"to\": 9}}\n"
+        ),
+    );
+    let error = run(&["traffic", WAREHOUSE, "--missions", &near, "-q"]).failed(2);
+    assert!(error.contains("vehicles robot and 3 touch where they start"), "{error}");
+}
