@@ -214,8 +214,8 @@ impl TrafficArgs {
         out.flush()?;
         if let Some(directory) = &self.output {
             let ground = LayoutLevelView { imported, level: imported.layout.largest_level() };
-            write_to(&directory.join("run.json"), &scenario.to_json())?;
             map::draw(&scenario, None, Some(ground), directory, &mut notes())?;
+            write_to(&directory.join("run.json"), &scenario.to_json())?;
         }
         Ok(status(answer.is_sound()))
     }

@@ -47,7 +47,8 @@ pub(super) struct LifelongRobot {
     pub(super) trail: Vec<usize>,
     /// Number of atoms of its way that are in this list.
     entered: usize,
-    /// Its stops at corners, goals and ends: the time \[s\], the number of atoms in `trail`, and the length on the last of these \[m\].
+    /// Its stops at corners, goals and ends: the time \[s\], the number of atoms in `trail`, and the length on the last of these \[m\];
+    /// infinite: at its end.
     pub(super) stops: Vec<(f64, usize, f64)>,
 }
 
@@ -128,7 +129,9 @@ impl LifelongRobot {
         if !comes {
             return false;
         }
-        self.stops.push((time + step, self.trail.len(), self.along()));
+        // At the start of a new way it is at the end of the atom before.
+        let along = if self.entered > 0 { self.along() } else { f64::INFINITY };
+        self.stops.push((time + step, self.trail.len(), along));
         // At a goal it may get another way before it turns for this one.
         if self.way.goals.first().is_some_and(|&goal| goal <= next) {
             self.way.goals.remove(0);

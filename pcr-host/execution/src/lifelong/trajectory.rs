@@ -205,7 +205,8 @@ fn pieces(path: &DrivenPath, robot: &LifelongRobot, before: &[f64], length: f64)
     // Stops where a segment ends, and the end.
     let mut stops: Vec<(f64, f64)> = vec![(0.0, 0.0)];
     for &(time, atoms, along) in &robot.stops {
-        let at = atoms.checked_sub(1).map_or(0.0, |last| before[last] + along);
+        let end = before.get(atoms).copied().unwrap_or(length);
+        let at = atoms.checked_sub(1).map_or(0.0, |last| f64::min(before[last] + along, end));
         if at > stops[stops.len() - 1].1 + NEAR && is_border(at) {
             stops.push((time, at));
         }
