@@ -70,7 +70,7 @@ fn what_is_wrong_in_a_file_is_told_with_its_place() {
         ("c.jsonl", "{\"id\": 1, \"to\": 9}\n{\"id\": \"1\", \"to\": 8}", ":4:8: id: there is a mission 1 already\n"),
         ("d.jsonl", "{\"id\": 1, \"to\": 9, \"vehicle\": \"x\"}", ":3:31: there is no vehicle x\n"),
         ("e.jsonl", "{\"id\": 1}", ":3:1: to is missing\n"),
-        ("f.jsonl", "{\"id\": 1, \"to\": 9", ":3:18: "),
+        ("f.jsonl", "{\"id\": 1, \"to\": 9", ":4:1: the text ends where "),
         (
             "g.jsonl",
             "{\"id\": 1, \"to\": 9, \"release\": 9, \"due\": 5}",
