@@ -150,7 +150,7 @@ fn add(path: &mut DrivenPath, site: &RouteGraph, atom: usize, mut left: f64) {
             let part = placed.part(0.0, keep);
             match part.shape {
                 PathSegment::Line { .. } => path.line(part.start, part.end(), keep),
-                PathSegment::Arc { .. } => {
+                PathSegment::Arc { .. } | PathSegment::Cusp => {
                     path.face(part.start, part.heading);
                     path.push(part.shape, keep, false);
                 }
