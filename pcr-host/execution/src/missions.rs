@@ -142,6 +142,19 @@ pub struct WaitEntry {
     pub y: f64,
 }
 
+/// The proof of a run by its scenario. Turns in place are nanometres there, and rounding of a long way before them can move them in time.
+/// So a contact there is no proof that vehicles touched: it is not decided.
+fn certificate(run: &Scenario) -> Result<MotionCertificate, String> {
+    let mut found = MotionCertificate::prove::<f64>(run).map_err(|error| error.to_string())?;
+    if found.verdict == "contact" {
+        found.verdict = "undecided";
+        found.undecided.append(&mut found.contacts);
+        found.error =
+            Some("in the scenario of the run, rounding moves turns in place, so that it is not proved".into());
+    }
+    Ok(found)
+}
+
 impl MissionsReport {
     /// Runs the missions of a fleet on a layout. Also returns the run as a scenario. `told` gets the simulated time \[s\] and the number of
     /// missions that are over.
@@ -154,7 +167,7 @@ impl MissionsReport {
         told: &dyn Fn(f64, usize),
     ) -> Result<(Self, Scenario), String> {
         let run = run_missions(imported, fleet, told)?;
-        let certificate = MotionCertificate::prove::<f64>(&run.scenario).map_err(|error| error.to_string())?;
+        let certificate = certificate(&run.scenario)?;
         let node = |place: usize| imported.layout.nodes[place].id.to_string();
         let id = |vehicle: usize| fleet.vehicles[vehicle].id.clone();
         let missions: Vec<MissionEntry> = fleet

@@ -74,7 +74,7 @@ pub(super) struct TrafficArgs {
     slip: Option<f64>,
     #[command(flatten)]
     printed: OutputArgs,
-    /// Directory for missions.json and plan.json, or run.json, and pictures
+    /// Directory for missions.json and plan.json, with pictures; with --missions for run.json and its picture
     #[arg(short, long, value_name = "DIR", value_parser = folder())]
     output: Option<PathBuf>,
     #[command(flatten)]
@@ -196,9 +196,6 @@ impl TrafficArgs {
         if fleet.missions.is_empty() {
             return Err(wrong("there is no mission".into()));
         }
-        if self.output.is_some() {
-            map::are_few(fleet.vehicles.len(), "maps are drawn").map_err(|failure| wrong(failure.to_string()))?;
-        }
         let progress = ProgressLine::new(format!("{}: missions", missions_file.display()));
         let told = |_: f64, over: usize| progress.set(over, fleet.missions.len());
         let answer = MissionsReport::run(imported, &fleet, &told);
@@ -213,8 +210,14 @@ impl TrafficArgs {
         }
         out.flush()?;
         if let Some(directory) = &self.output {
+            // Its readers would take what is not proved for what happened.
+            if answer.certificate.verdict != "proved" {
+                let problem = "the run is not proved, so that run.json is not written";
+                return Err(CliError::wrong(directory, problem));
+            }
+            // Without the collision maps of all vehicles: in hours they have too much for a picture.
             let ground = LayoutLevelView { imported, level: imported.layout.largest_level() };
-            map::draw(&scenario, None, Some(ground), directory, &mut notes())?;
+            map::draw(&scenario, Some(&[]), Some(ground), directory, &mut notes())?;
             write_to(&directory.join("run.json"), &scenario.to_json())?;
         }
         Ok(status(answer.is_sound()))
