@@ -257,7 +257,7 @@ fn vehicles_in_reverse_gear() {
 
 /// Segments are numbered as in the file, where a change of gear is none.
 #[test]
-fn tables_and_motions_in_reverse_gear_are_proved() {
+fn tables_in_reverse_gear_are_proved() {
     fn proved<S: HostScalar>(scenario: &Scenario) {
         let options = RegionOptions { agent: None, slices: None, certificate: true };
         let answer = RegionsReport::compute::<S>(scenario, options).unwrap();
