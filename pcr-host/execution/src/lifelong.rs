@@ -38,6 +38,7 @@
 //! record     motions of the robots, for the independent checker   Certificate
 //! outcome    results of a run                                     Outcome
 //! own_missions  missions of a file: who does them, and where they are
+//! own_assignment  which vehicle does which of them
 //! own_events  closures and breakdowns
 //! own_run    a run of such missions                               MissionRun
 //! trajectory what a robot did, as an agent of a scenario
@@ -60,6 +61,7 @@ mod kinematic_limits;
 mod lifelong_report;
 mod motion_record;
 mod outcome;
+mod own_assignment;
 mod own_events;
 mod own_missions;
 mod own_run;
@@ -92,7 +94,7 @@ pub use endpoints::WellFormedness;
 pub use lifelong_report::{LifelongReport, LifelongRunEntry};
 pub use motion_record::RunCertificate;
 pub use outcome::{LifelongResult, MeasuredLifelongRun, TimeShares};
-pub use own_events::ClosureEffect;
+pub use own_missions::ClosureEffect;
 pub use own_run::{EventResult, MissionResult, MissionRun, MissionWait, run_missions};
 pub use run::{run, run_tasks, watched};
 pub use streets::{aisles, streets};

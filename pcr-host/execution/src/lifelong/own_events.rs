@@ -4,44 +4,13 @@
 //! vehicle that stands still is an obstacle where it is: its route ends there, and so do those of all that would wait for it for ever, until they
 //! have another one.
 
-use super::own_missions::{MissionOutcome, OwnMissions};
+use super::own_missions::{ClosureEffect, MissionOutcome, OwnEvent};
 use super::planning_context::{PlanningContext, TOLLS};
 use super::route_admission::AdmittedRoute;
 use super::run_state::{LifelongState, RobotMission};
 use super::scheduling::AGAIN;
 use pcr_formats::missions::ClosedElement;
 use std::rc::Rc;
-
-/// What a closure did to a vehicle.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum ClosureEffect {
-    /// It was on the element, or too near to stop before it.
-    Through,
-    /// It got another route.
-    Rerouted,
-    /// It went elsewhere or stopped, and waits.
-    Waits,
-}
-
-/// A closure or breakdown that has begun.
-#[derive(Clone, Debug, Default)]
-pub(super) struct OwnEvent {
-    pub(super) is_begun: bool,
-    pub(super) is_over: bool,
-    /// Vehicles on whose routes it is, and what became of them.
-    pub(super) effects: Vec<(usize, ClosureEffect)>,
-    /// Where a vehicle that broke down stands: its edge, `None` at a node, and the point \[m\].
-    pub(super) place: Option<(Option<usize>, [f64; 2])>,
-}
-
-impl OwnMissions {
-    /// Whether closures or breakdowns begin or end after this time.
-    pub(super) fn is_changing(&self, now: f64) -> bool {
-        let closures = self.fleet.closures.iter().map(|it| (it.at, it.until));
-        let breakdowns = self.fleet.breakdowns.iter().map(|it| (it.at, it.until));
-        closures.chain(breakdowns).any(|(at, until)| at > now || until.is_some_and(|until| until > now))
-    }
-}
 
 impl LifelongState {
     /// Begins and ends closures and breakdowns.

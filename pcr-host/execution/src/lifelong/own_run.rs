@@ -1,8 +1,7 @@
 //! A run of the missions of a file: until all are done or given up, without random delays.
 
 use super::endpoints::{Endpoints, WellFormedness};
-use super::own_events::{ClosureEffect, OwnEvent};
-use super::own_missions::{MissionOutcome, OwnMission, OwnMissions, OwnWait};
+use super::own_missions::{ClosureEffect, MissionOutcome, OwnEvent, OwnMission, OwnMissions, OwnWait};
 use super::random_draws::STEP;
 use super::robot::LifelongRobot;
 use super::route_graph::{DeparturePose, RouteGraph, VehicleLayer};
