@@ -4,7 +4,7 @@
 //! also to their `theta`. The standard does not say which way round: a turn of more than a kink is followed by a whole one, so that
 //! the outline sweeps all that it can. Turns have a length, which is so short that where the vehicle is within them does not matter. The
 //! reported heading is compared with that of the path, except where the vehicle turns. Where its heading is not known,
-//! [`OrderPath::unknown_heading`] tells why: there the vehicle is the disc around its outline.
+//! the path tells why: there the vehicle is the disc around its outline.
 
 use super::edge_orientation::EdgeOrientation;
 use crate::owned_path::{PathElement, StartPose};
