@@ -141,7 +141,7 @@ codes! {
     OtherVehicle = "other-vehicle",
     /// Lanes of other graphs are left as they are.
     OtherGraphs = "other-graphs",
-    /// Zones are, or a controller is, for the disc around the outline of the vehicle.
+    /// A controller is for the disc around the outline of the vehicle.
     DiscAroundOutline = "disc-around-outline",
     /// Hardly any memory is left to the process.
     Memory = "memory",

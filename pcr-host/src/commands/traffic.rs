@@ -74,7 +74,7 @@ pub(super) struct TrafficArgs {
     slip: Option<f64>,
     #[command(flatten)]
     printed: OutputArgs,
-    /// Directory for missions.json and plan.json, with pictures; with --missions for run.json and its picture
+    /// Directory for scenarios and pictures
     #[arg(short, long, value_name = "DIR", value_parser = folder())]
     output: Option<PathBuf>,
     #[command(flatten)]
