@@ -36,7 +36,8 @@ fn write_agent(text: &mut String, agent: &Agent) -> fmt::Result {
     writeln!(text, "        path: &[")?;
     for segment in &agent.path {
         let curve = match *segment {
-            PathSegment::Line { .. } | PathSegment::Cusp => "Curve::Line".to_owned(),
+            PathSegment::Line { .. } => "Curve::Line".to_owned(),
+            PathSegment::Cusp => panic!("a change of gear"),
             PathSegment::Arc { radius, sweep } => {
                 let turn = if sweep > 0.0 { TurnSide::Left } else { TurnSide::Right };
                 format!("Curve::Arc {{ radius: number({radius:?}), turn: TurnSide::{turn:?} }}")

@@ -123,6 +123,7 @@ fn compare_in<S: HostScalar>(agents: &[Value], polygons: [&[Point]; 2], slack: f
                     assert!(!in_slice(0.0) || distance <= 3.0 * slack, "t {} l {length}: {distance}", slice.t);
                     // What no other region may hold is in this one.
                     let others = regions.iter().filter(|other| *other != region);
+                    // The end of a path is rounded in another way as an end of a region than as the sum of its segments.
                     let alone = others.clone().all(|other| {
                         !within(other.t, slice.t) || !within([other.l[0] - lost, other.l[1] + lost], length)
                     });

@@ -271,7 +271,7 @@ typedef enum PcrAdmissionErrorKind {
 } PcrAdmissionErrorKind;
 
 /*
- What was wrong with an agent.
+ Why an agent was refused, and which of its numbers is wrong.
  */
 typedef struct PcrInputError {
   /*

@@ -168,7 +168,7 @@ pub enum PcrInputList {
     Corners = 3,
 }
 
-/// What was wrong with an agent.
+/// Why an agent was refused, and which of its numbers is wrong.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct PcrInputError {

@@ -455,6 +455,18 @@ fn turns_in_place_gears_and_gaps_in_the_memory() {
         assert_eq!(pcr_fleet_build(Some(&mut fleet)), PcrStatus::Ok);
         assert_eq!(regions(&fleet, 0).len(), expected, "{distance} m away");
     }
+    // A change of gear moves nothing: at the end of a path, or twice, it is as if it were not there.
+    let change = PcrPathSegment { curve: PCR_REVERSE, length: 0.0, radius: 0.0 };
+    let path = |legs: &[PcrPathSegment]| {
+        let mut fleet = fleet(&memory(2, 8, 16), &[truck(-2.0, 0.0, 0.0, legs), PcrAgent { x: 0.3, ..post(0.4) }]);
+        assert_eq!(pcr_fleet_build(Some(&mut fleet)), PcrStatus::Ok);
+        regions(&fleet, 0)
+    };
+    let plain = path(&[line(2.0), line(1.0)]);
+    assert!(!plain.is_empty());
+    assert_eq!(path(&[line(2.0), line(1.0), change]), plain);
+    assert_eq!(path(&[line(2.0), change, change, line(1.0)]), plain);
+    assert_ne!(path(&[line(2.0), change, line(1.0)]), plain);
     // It drives on in reverse with its fork, 2 m long, ahead of its rear all the time: at its end, its fork is in front of it.
     let fork = [
         PcrCorner { x: 0.0, y: -0.1 },

@@ -432,7 +432,7 @@ fn check_all(py: Python<'_>, texts: Vec<String>, threads: Option<usize>) -> PyRe
     answers.into_iter().enumerate().map(|(at, answer)| answer.map_err(|fault| numbered(py, &fault, at))).collect()
 }
 
-/// The same fault, with a number as the last part of it.
+/// Adds a number to a fault, as the last part of it.
 fn numbered(py: Python<'_>, fault: &PyErr, number: usize) -> PyErr {
     let parts = || -> PyResult<Py<PyTuple>> {
         let mut parts: Vec<Bound<'_, PyAny>> = fault.value(py).getattr("args")?.try_iter()?.collect::<PyResult<_>>()?;

@@ -309,6 +309,12 @@ class Answers(unittest.TestCase):
                 for length in (0.9 * lo + 0.1 * hi, 0.1 * lo + 0.9 * hi):
                     self.assertTrue(any(polygon.distance(Point(t, length)) < 0.02 for polygon in whole), (region, t, length))
             self.assertTrue(all(region.t[0] <= x <= region.t[1] for polygon in whole for x, _ in polygon.exterior.coords))
+        # One that leaves a place blocks it from the beginning: the polygon does not taper off there.
+        leaving: dict[str, Any] = {**AGENT, "start": {"x": 0, "y": 0, "heading": math.pi / 2}}
+        region = pcr.Fleet([CROSSING[0], {"id": 2, **leaving}]).regions()[0]
+        self.assertTrue(region.open_start)
+        (t, lo, hi), whole = region.outline(200)[0], [Polygon(points) for points in region.polygons(200)]
+        self.assertTrue(any(polygon.distance(Point(region.t[0], lo + 0.05 * (hi - lo))) < 1e-3 for polygon in whole))
         crossing_docs = pcr.Fleet.read(TOP / "docs/forklift.json")
         bodies = crossing_docs.shapes(0.0)
         self.assertEqual([round(body.area, 3) for body in bodies], [0.96, 0.502])

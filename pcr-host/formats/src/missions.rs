@@ -99,7 +99,7 @@ pub struct MissionRequest {
     pub vehicle: Option<usize>,
 }
 
-/// What is closed.
+/// The element of a layout that is closed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum ClosedElement {
     /// An edge of the layout, by its index: nobody enters it, in either direction.
@@ -274,7 +274,7 @@ impl FleetMissions {
             return Err(record.wrong("due", "it is due before it is released".into()));
         }
         let priority = record.integer("priority")?.unwrap_or(0);
-        let vehicle = self.vehicle(record, false)?;
+        let vehicle = record.text("vehicle")?.map(|name| self.vehicle(&name)).transpose()?;
         self.missions.push(MissionRequest { id, stops, has_origin: from.is_some(), release, due, priority, vehicle });
         Ok(())
     }
@@ -294,19 +294,16 @@ impl FleetMissions {
     }
 
     fn add_breakdown(&mut self, record: &Record<'_>) -> Result<(), MissionFileError> {
-        let vehicle = self.vehicle(record, true)?.unwrap_or_default();
+        let vehicle = self.vehicle(&record.required("vehicle")?)?;
         let (at, until) = times(record)?;
         self.breakdowns.push(Breakdown { vehicle, at, until });
         Ok(())
     }
 
-    /// The vehicle that a record names.
-    fn vehicle(&self, record: &Record<'_>, is_required: bool) -> Result<Option<usize>, MissionFileError> {
-        let name = if is_required { Some(record.required("vehicle")?) } else { record.text("vehicle")? };
-        let Some((name, position)) = name else { return Ok(None) };
-        let found = self.vehicles.iter().position(|vehicle| vehicle.id == name);
-        let problem = || format!("there is no vehicle {name}");
-        found.map(Some).ok_or_else(|| MissionFileError { position, problem: problem() })
+    /// The vehicle of a name.
+    fn vehicle(&self, (name, position): &PlacedName) -> Result<usize, MissionFileError> {
+        let found = self.vehicles.iter().position(|vehicle| vehicle.id == *name);
+        found.ok_or_else(|| MissionFileError { position: *position, problem: format!("there is no vehicle {name}") })
     }
 }
 

@@ -83,7 +83,7 @@ pub(super) struct Fault {
 impl Fault {
     const NONE: Self = Self { status: PcrStatus::Ok, list: PcrInputList::Agent, index: 0, field: c"" };
 
-    /// The same fault, in an entry of a list.
+    /// Returns the fault as one of an entry of a list.
     fn at(self, list: PcrInputList, index: usize) -> Self {
         Self { list, index, ..self }
     }
@@ -149,7 +149,7 @@ impl Fleet {
         Ok(Self { segments, phases, corners, motions, table, progress, reaches, fault: Fault::NONE })
     }
 
-    /// The same fleet in other memory: agents, table, orders and progress.
+    /// Copies the fleet into other memory: agents, table, orders and progress.
     pub(super) fn copied(&self, memory: &PcrMemory) -> Result<Self, PcrStatus> {
         let mut new = Self::new(memory)?;
         for own in self.motions() {
@@ -416,7 +416,7 @@ fn place(agent: &PcrAgent, slots: &mut [Segment<S>]) -> Result<usize, Fault> {
         last = last.facing(angle(agent.facing))?;
     }
     *slots.first_mut().ok_or(PcrStatus::NoRoom)? = last;
-    let mut path = PathInSlots { slots, count: 0, last, reversed: false };
+    let mut path = PathInSlots { slots, count: 0, last, has_heading: agent.corner_count > 0, reversed: false };
     for (index, leg) in legs.iter().enumerate() {
         path.push(leg).map_err(|fault| fault.at(PcrInputList::Legs, index))?;
     }
@@ -428,38 +428,40 @@ struct PathInSlots<'a> {
     slots: &'a mut [Segment<S>],
     count: usize,
     last: Segment<S>,
-    /// Whether the next segment is the first one after a change of gear.
+    /// Whether the agent is no disc, so that its heading counts.
+    has_heading: bool,
+    /// Whether the gear changes before the next segment.
     reversed: bool,
 }
 
 impl PathInSlots<'_> {
     fn push(&mut self, leg: &PcrPathSegment) -> Result<(), Fault> {
         let (length, radius) = (inner(leg.length), inner(leg.radius));
+        if leg.curve == PCR_REVERSE {
+            self.reversed = !self.reversed;
+            return Ok(());
+        }
+        // The segment before a change of gear ends with the new direction of travel.
+        let before = if self.reversed { self.last.turned(angle(HALF_TURN))? } else { self.last };
         let mut next = match leg.curve {
-            PCR_LINE => self.last.then_line(length)?,
-            PCR_LEFT => self.last.then_arc(radius, TurnSide::Left, length)?,
-            PCR_RIGHT => self.last.then_arc(radius, TurnSide::Right, length)?,
-            PCR_PIVOT_LEFT => self.last.then_pivot(radius, TurnSide::Left, length)?,
-            PCR_PIVOT_RIGHT => self.last.then_pivot(radius, TurnSide::Right, length)?,
-            PCR_REVERSE => return self.reverse(),
+            PCR_LINE => before.then_line(length)?,
+            PCR_LEFT => before.then_arc(radius, TurnSide::Left, length)?,
+            PCR_RIGHT => before.then_arc(radius, TurnSide::Right, length)?,
+            PCR_PIVOT_LEFT => before.then_pivot(radius, TurnSide::Left, length)?,
+            PCR_PIVOT_RIGHT => before.then_pivot(radius, TurnSide::Right, length)?,
             _ => return Err(PcrStatus::NoSuchCurve.into()),
         };
         if next.length() > S::ZERO {
             if core::mem::take(&mut self.reversed) {
-                next = next.facing_opposite()?;
+                if self.has_heading {
+                    next = next.facing_opposite()?;
+                }
+                if let Some(last) = self.count.checked_sub(1) {
+                    *self.slots.get_mut(last).ok_or(PcrStatus::NoRoom)? = before;
+                }
             }
             *self.slots.get_mut(self.count).ok_or(PcrStatus::NoRoom)? = next;
             (self.last, self.count) = (next, self.count.saturating_add(1));
-        }
-        Ok(())
-    }
-
-    /// The segment before a change of gear ends with the new direction of travel.
-    fn reverse(&mut self) -> Result<(), Fault> {
-        self.last = self.last.turned(angle(HALF_TURN))?;
-        self.reversed = !self.reversed;
-        if let Some(before) = self.count.checked_sub(1) {
-            *self.slots.get_mut(before).ok_or(PcrStatus::NoRoom)? = self.last;
         }
         Ok(())
     }

@@ -20,9 +20,9 @@ Corner = tuple[float, float]
 Column = tuple[float, Sequence[Span]]
 
 
-def chains(columns: Sequence[Column], t: Span) -> list[list[Corner]]:
+def chains(columns: Sequence[Column], t: Span, is_open: tuple[bool, bool]) -> list[list[Corner]]:
     """The polygons, in time and length, around what is blocked at evenly spaced times between the ends of a region: a stretch goes on as long as
-    it overlaps just one of the next time, and no other does."""
+    it overlaps just one of the next time, and no other does. ``is_open`` tells whether the other agent stands before and after."""
     done: list[list[tuple[float, float, float]]] = []
     open_: list[list[tuple[float, float, float]]] = []
     for time, stretches in columns:
@@ -42,11 +42,11 @@ def chains(columns: Sequence[Column], t: Span) -> list[list[Corner]]:
     for chain in done + open_:
         points = [(time, lo) for time, lo, _ in chain] + [(time, hi) for time, _, hi in reversed(chain)]
         first, last = chain[0], chain[-1]
-        # A region begins and ends at a point, or where it is cut at once; its ends are between the times that were asked for.
-        if columns and last[0] == columns[-1][0]:
-            points.insert(len(chain), (t[1], (last[1] + last[2]) / 2))
-        if columns and first[0] == columns[0][0]:
-            points.append((t[0], (first[1] + first[2]) / 2))
+        # Its ends are not among the times that were asked for. It tapers off there, unless what is blocked stays so.
+        if last[0] == columns[-1][0]:
+            points[len(chain):len(chain)] = [(t[1], length) for length in (last[1:] if is_open[1] else ((last[1] + last[2]) / 2,))]
+        if first[0] == columns[0][0]:
+            points += [(t[0], length) for length in (first[:0:-1] if is_open[0] else ((first[1] + first[2]) / 2,))]
         polygons.append(points)
     return polygons
 
@@ -103,7 +103,7 @@ def collision_map(fleet: Fleet, agent: int, axes: Any, times: Sequence[float]) -
                 axes.axhspan(lo, hi, **style)
                 style.pop("label", None)
             continue
-        for points in chains(columns, (t[0], t[1])):
+        for points in chains(columns, (t[0], t[1]), (region["open_start"], region["open_end"])):
             axes.fill([x for x, _ in points], [y for _, y in points], **style)
             style.pop("label", None)
         # What the other agent blocks while it stands is blocked before and after, too.

@@ -55,14 +55,14 @@ class Region(_Ranges):
         return [(slice["t"], lo, hi) for slice in own[0]["slices"] for lo, hi in slice["l"]]
 
     def polygons(self, n: SupportsIndex = 60) -> list[list[tuple[float, float]]]:
-        """The corners (time, length) of polygons around it, through what it covers at ``n`` times inside; none where the other agent stands
-        all the time, because it has no end then."""
+        """The corners (time, length) of polygons through what it covers at ``n`` times inside, for pictures: between these times their edges
+        are chords, which leave out slivers of it. None where the other agent stands all the time, because it has no end then."""
         if self.t[0] == self.t[1]:
             return []
         columns: dict[float, list[Span]] = {}
         for t, lo, hi in self.outline(n):
             columns.setdefault(t, []).append((lo, hi))
-        return chains(list(columns.items()), self.t)
+        return chains(list(columns.items()), self.t, (self.open_start, self.open_end))
 
     def plot(self, ax: Any, *, columns: SupportsIndex = 60, **style: Any) -> Any:
         """Draws it on matplotlib's ``ax``, which it returns: time to the right, length upwards. ``style`` goes to ``ax.fill``."""
