@@ -14,42 +14,44 @@
 //! - a *safe end* is a node where a robot can stand for good: all other nodes can be reached while robots stand at all safe ends.
 //!
 //! ```text
-//! gates      holds as lists of places to wait                     Contact, Gate
-//! site       atoms: pieces of way, and how robots on them touch   Site
-//! ends       nodes where robots may stand for good                WellFormedness
-//! places     places to stand on dead ends, for more robots than ends
-//! routes     quickest routes
-//! abilities  speed and acceleration of a robot
-//! robot      how robots move and are delayed
-//! way        a path from node to node, and its times without waits
-//! book       regions of the ways, and their orders
-//! timetable  when robots would be where                           Timetable
-//! waits      what robots wait for on their ways
-//! forecast   whether all can finish, and when
-//! tasks      first places of robots, and a stream of tasks        Tasks
-//! assign     which robot does which task
-//! locks      locks on one edge after the other, for comparison
-//! scene      the present fleet, and routes through it
-//! search     orders on a way
-//! dispatch   ways and orders for a mission
-//! switching  orders that are reversed while robots drive
-//! clearing   moves robots out of the way of a mission
-//! joint      robots that move up together
-//! record     motions of the robots, for the independent checker   Certificate
-//! outcome    results of a run                                     Outcome
-//! own_missions  missions of a file: who does them, and where they are
-//! own_assignment  which vehicle does which of them
-//! own_events  closures and breakdowns
-//! own_run    a run of such missions                               MissionRun
-//! trajectory what a robot did, as an agent of a scenario
-//! draws      random goals, delays and starts
-//! streets    a generated site of any size                         streets
-//! state      the fleet, its missions, and results so far
-//! turns      the order in which missions are tried
-//! decide     which robot looks for a way at what time
-//! alone      what robots would do if no other robot was in their way
-//! run        a run
-//! answer     the answer of `pcr traffic --hours`                  Lifelong
+//! gates                 places where a robot has to wait for another one
+//! route_element         atoms: pieces of way
+//! route_graph           a layout as atoms, and how robots on two of them touch
+//! endpoints             nodes where robots may stand for good                         WellFormedness
+//! parking_spots         places to stand on dead ends, for more robots than such nodes
+//! route_finder          quickest routes
+//! kinematic_limits      speed and acceleration of a robot
+//! robot                 how robots move and are delayed
+//! route                 a path from node to node, and its times without waits
+//! region_table          regions of the routes, and their precedence
+//! timetable             when robots would be where
+//! region_waits          what robots wait for on their routes
+//! forecast              whether all can finish, and when
+//! tasks                 first places of robots, and a stream of tasks
+//! task_assignment       which robot does which task
+//! reservations          locks on one edge after the other, for comparison
+//! planning_context      the present fleet, and routes through it
+//! precedence_search     precedence on a route
+//! route_admission       routes and precedence for a mission
+//! precedence_switching  precedence that is reversed while robots drive
+//! unblocking            moves robots out of the way of a mission
+//! joint_advance         robots that move up together, where nothing else is admitted
+//! joint_phase           the times at which they do
+//! motion_record         motions of the robots, for the independent checker            RunCertificate
+//! outcome               results of a run                                              LifelongResult
+//! own_missions          missions of a file, and what became of them                   ClosureEffect
+//! own_assignment        which vehicle does which of them
+//! own_events            closures and breakdowns
+//! own_run               a run of such missions                                        run_missions, MissionRun
+//! trajectory            what a robot did, as an agent of a scenario
+//! random_draws          random goals, delays and starts
+//! streets               a generated site of any size
+//! run_state             the fleet, its missions, and results so far
+//! scheduling            which robot looks for a route at what time
+//! starvation            missions that wait for long go first
+//! unimpeded             what robots would do if no other robot was in their way
+//! run                   a run                                                         run, run_tasks, watched
+//! lifelong_report       the answer of `pcr traffic --hours`                           LifelongReport
 //! ```
 
 mod endpoints;
@@ -76,6 +78,7 @@ mod reservations;
 mod robot;
 mod route;
 mod route_admission;
+mod route_element;
 mod route_finder;
 mod route_graph;
 mod run;

@@ -1,7 +1,8 @@
 //! Records the motions of robots for the independent checker, which finds any contact during a run.
 
 use super::robot::{LifelongRobot, RobotPhase};
-use super::route_graph::{RouteGraph, STRAIGHT, wrapped};
+use super::route_element::{STRAIGHT, wrapped};
+use super::route_graph::RouteGraph;
 
 use pcr_certify::motion::{MotionFindings, Mover, meetings};
 use pcr_certify::outline::motion::Driven;

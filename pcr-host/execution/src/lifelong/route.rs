@@ -1,7 +1,8 @@
 //! The path of a robot from node to node, its stops, and its times if no other robot is in the way.
 
 use super::kinematic_limits::KinematicLimits;
-use super::route_graph::{DeparturePose, RouteElement, RouteGraph, STRAIGHT, wrapped};
+use super::route_element::{RouteElement, STRAIGHT, wrapped};
+use super::route_graph::{DeparturePose, RouteGraph};
 use pcr_core::Curve;
 
 /// A place where a robot stops, and turns if it is a disc.

@@ -4,7 +4,8 @@
 //! and kept for the most recent goals.
 
 use super::kinematic_limits::KinematicLimits;
-use super::route_graph::{DeparturePose, RouteGraph, wrapped};
+use super::route_element::wrapped;
+use super::route_graph::{DeparturePose, RouteGraph};
 use std::cell::RefCell;
 use std::cmp::Ordering;
 use std::collections::{BinaryHeap, HashMap, HashSet, VecDeque};

@@ -5,7 +5,8 @@
 //! stands.
 
 use super::robot::{LifelongRobot, RobotPhase};
-use super::route_graph::{RouteGraph, STRAIGHT, wrapped};
+use super::route_element::{STRAIGHT, wrapped};
+use super::route_graph::RouteGraph;
 use pcr_core::{Curve, TurnSide};
 use pcr_formats::scenario::{Agent, MotionSpec, PathSegment, PlacedSegment, TURN};
 use std::collections::VecDeque;
