@@ -9,23 +9,23 @@
 //! The modules, in the order in which they depend on one another:
 //!
 //! ```text
-//! scalar     number formats: f32, f64, or your own          Scalar, Wide, Unit, Angle
-//! geometry   points, directions, intervals, boxes           Point, Pose, Interval
-//! intervals  unions and gaps of intervals, without storage  union, gaps
-//! segment    lines and arcs placed in the plane             Segment, Curve, Turn
-//! outline    convex polygons, rounded by a radius           Outline
-//! path       chains of segments, turns in place (ρ, Eq. 1)  Path, PathRef
-//! profile    length over time (λ, Eq. 1-3) and its inverse  Profile, ProfileRef, Limits
-//! motion     disc or outline + path + profile + start       Motion
-//! pair       closed forms in coordination space (l₁, l₂)    (internal: P1, P3, events, cells)
-//! pieces     storage of region pieces, fixed capacity       Piece
-//! region     connected regions in path-time space (t, l)    RegionRef
-//! ecm        table of all regions of a fleet                Ecm
-//! overlaps   regions of two agents, without a table         overlaps
-//! query      conflicts, safe intervals, delays, waits       Encounter, BroadPhase, safe_intervals, earliest_start
-//! precedence who passes first, safe under any delays        PrecedenceTable, MovementAuthority
-//! plan       start delays and speed plans by priority       plan_delays, plan_speed, plan_speeds
-//! crossing   the paper's descriptors (Table VII)            Crossing, crossings
+//! scalar       number formats: f32, f64, or your own          Scalar, Wide, Unit, Angle
+//! geometry     points, directions, intervals, boxes           Point, Pose, Interval
+//! intervals    unions and gaps of intervals, without storage  union, gaps
+//! segment      lines and arcs placed in the plane             Segment, Curve
+//! outline      convex polygons, rounded by a radius           Outline
+//! path         chains of segments, turns in place (ρ, Eq. 1)  Path, PathRef
+//! profile      length over time (λ, Eq. 1-3) and its inverse  Profile, ProfileRef, Limits
+//! motion       disc or outline + path + profile + start       Motion
+//! pair         closed forms in coordination space (l₁, l₂)    (internal: P1, P3, events, cells)
+//! piece_store  storage of region pieces, fixed capacity       Piece
+//! region       connected regions in path-time space (t, l)    RegionRef
+//! ecm          table of all regions of a fleet                Ecm
+//! overlaps     regions of two agents, without a table         overlaps
+//! query        conflicts, safe intervals, delays, waits       Encounter, BroadPhase, safe_intervals, earliest_start
+//! precedence   who passes first, safe under any delays        PrecedenceTable, MovementAuthority
+//! plan         start delays and speed plans by priority       plan_delays, plan_speed, plan_speeds
+//! crossing     the paper's descriptors (Table VII)            Crossing, crossings
 //! ```
 //!
 //! Start at [`Ecm`], which has an example. Signs: `x` along the direction of travel, `y` to its left, angles and turns

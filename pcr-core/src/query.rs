@@ -2,19 +2,19 @@
 //! free.
 //!
 //! ```text
-//! legs        a motion, split where its formula changes          (internal)
-//! windows     pairs of legs, while the agents may be near        (internal)
-//! chord       the relative motion between two instants           (internal)
-//! bodies      outlines at an instant, and how long nothing changes (internal)
-//! contact     when two agents are in contact                     Encounter, Contacts
-//! clearance   the closest approach of two agents                 Approach
-//! conflict    contacts with their place and depth                Conflict, Conflicts, first_conflict, first_overlap
-//! broad_phase which pairs of a fleet can be in contact, and when BroadPhase
-//! safe        when a part of a path is free, and the dual        safe_intervals, safe_lengths
-//! bracket     the end of a forbidden interval                    (internal)
-//! delay       start delays that lead to a conflict               earliest_start
-//! depart      waits on the way                                   earliest_departure
-//! stretch     speed scale factors                                least_duration
+//! legs             a motion, split where its formula changes    (internal)
+//! leg_windows      pairs of legs, while the agents may be near  (internal)
+//! relative_motion  the relative motion between two instants     (internal)
+//! bodies           outlines at an instant, and how long nothing changes (internal)
+//! contact          when two agents are in contact               Encounter, Contacts
+//! clearance        the closest approach of two agents
+//! conflict         contacts with their place and depth          Conflict, Conflicts, first_conflict, first_overlap
+//! broad_phase      which pairs of a fleet can be in contact, and when BroadPhase
+//! safe             when a part of a path is free, and the dual  safe_intervals, safe_lengths
+//! boundary_search  the end of a forbidden interval              (internal)
+//! start_delay      start delays that lead to a conflict         earliest_start
+//! departure        waits on the way                             earliest_departure
+//! time_scaling     speed scale factors                          least_duration
 //! ```
 
 mod bodies;

@@ -2,17 +2,17 @@
 //! needs, and its errors.
 //!
 //! ```text
-//! track      discs in motion as plain numbers           Track
-//! reference  the definition, evaluated by bisection: the reference for errors
-//! pcr        this library, in every format, on one core and all
-//! sampled    the sampled collision map of the paper's reference [34]
-//! polyline   flattened paths, closed-form discs piece by piece
-//! mesh       proximity of meshes, sample by sample, as the paper uses PQP
-//! crowd      random fleets of any size
-//! errors     an answer against the reference
-//! measure    times, in rounds                           Comparison
-//! chart      time against error
-//! stopwatch  processor time of one core, also on a busy machine
+//! disc_track      discs in motion as plain numbers
+//! reference       the definition, evaluated by bisection: the reference for errors
+//! pcr             this library, in every format, on one core and all
+//! sampled         the sampled collision map of the paper's reference [34]
+//! polyline        flattened paths, closed-form discs piece by piece
+//! mesh_proximity  proximity of meshes, sample by sample, as the paper uses PQP
+//! crowd           random fleets of any size
+//! errors          an answer against the reference
+//! measure         times, in rounds                  Comparison
+//! error_chart     time against error
+//! stopwatch       processor time of one core, also on a busy machine
 //! ```
 //!
 //! All methods start from the same paths and motions, already placed in the plane. Sampling, flattening and the

@@ -1,23 +1,23 @@
 //! Pictures of a scenario and its collision regions: SVG, PNG, and a page to explore them in a browser.
 //!
 //! ```text
-//! scene       motions, regions and their outlines, shared by all pictures
-//! contour     the exact outline of a region in time and travelled length
-//! axis        metres and seconds to pixels, ticks
-//! labels      positions of labels
-//! palette     colours of the agents
-//! workspace   paper Fig. 10: paths and discs
-//! map         paper Fig. 11: the extended collision map of an agent
-//! overview    both side by side
-//! page        the same in a browser, with a time slider
-//! audit       result of an audit of exclusions
-//! layout      the corridors on the edges of a layout
-//! locks       a page on which the edges of a layout show the lengths that they block
-//! replay      a page that replays a simulation
-//! live        a page that shows a running fleet
-//! template    pages that contain everything they need
-//! svg         the writer of SVG files
-//! png         SVG to PNG (feature `png`)
+//! region_scene    motions, regions and their outlines, shared by all pictures
+//! contour         the exact outline of a region in time and travelled length
+//! axis            metres and seconds to pixels, ticks
+//! labels          positions of labels
+//! palette         colours of the agents
+//! workspace       paper Fig. 10: paths and discs
+//! map             paper Fig. 11: the extended collision map of an agent
+//! overview        both side by side
+//! page            the same in a browser, with a time slider
+//! audit           result of an audit of exclusions
+//! layout          the corridors on the edges of a layout
+//! exclusion_page  a page on which the edges of a layout show the lengths that they block
+//! replay          a page that replays a simulation
+//! fleet_page      a page that shows a running fleet
+//! template        pages that contain everything they need
+//! svg             the writer of SVG files
+//! png             SVG to PNG (feature `png`)
 //! ```
 
 mod audit;

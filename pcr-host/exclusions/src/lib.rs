@@ -13,20 +13,25 @@
 //! | pcr | takes the locks of the stretch it is on | bars the stretches of its locks |
 //!
 //! ```text
-//! way       an edge in one direction, and the resources of its stretches
-//! nearest   the least distance of two stretches
-//! reach     where on a curve a polygon is near
-//! meetings  tokens by which two edges can exclude each other
-//! audit     contacts that are not excluded, and exclusions that are not needed          Audit
-//! cover     covers of a graph by cliques, and a lower bound of their number
-//! edit      changes of a text at spans; the rest is kept byte for byte
-//! kept      a written layout is the one before, with its edges cut
-//! selection which edges and nodes an audit is about
-//! settings  options and warnings of writers
-//! stamp     for which vehicle a file was written
-//! outline   polygons around corridors
-//! nav2, opentcs, rmf, vda5050, own   the formats
-//! report    results of writing and of audits, as text
+//! directed_edge    an edge in one direction, and the resources of its stretches
+//! nearest          the least distance of two stretches
+//! curve_proximity  where on a curve a polygon is near
+//! token_conflicts  tokens by which two edges can exclude each other
+//! audit            contacts that are not excluded, and exclusions that are not needed
+//! clique_cover     covers of a graph by cliques, and a lower bound of their number
+//! text_edits       changes of a text at spans; the rest is kept byte for byte
+//! kept             a written layout is the one before, with its edges cut
+//! selection        which edges and nodes an audit is about
+//! options          options and warnings of writers
+//! stamp            for which vehicle a file was written
+//! convex_outline   polygons around corridors
+//! write            exclusions written into the file of a format
+//! nav2             nav2 route graphs
+//! opentcs          openTCS plant models
+//! rmf              Open-RMF buildings
+//! vda5050          zones of VDA 5050
+//! lock_file        the lock table of this tool
+//! report           results of writing and of audits, as text
 //! ```
 
 mod audit;

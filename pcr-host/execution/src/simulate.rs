@@ -2,24 +2,24 @@
 //! controllers.
 //!
 //! ```text
-//! task        robots, missions, obstacles of a scenario           Task
-//! forage      the paper's experiment (Section 4.2)
-//! tangents    shortest ways around discs
-//! course      the path of a mission, and drives along it
-//! noise       random numbers by seed, robot and purpose
-//! body        the true state of a robot                           Disturbance
-//! supervisor  plans with collision regions every few seconds:
-//!   agent       a robot as it knows it
-//!   observer    where a robot can be
-//!   replan      motions for the rest of the paths
-//!   guard       passing orders in between
-//!   braking     speeds frame by frame
-//! steering    common code of the reactive controllers:
-//!   potential   artificial potential field
-//!   orca        optimal reciprocal collision avoidance
-//! world       true positions and missions, frame by frame
-//! contact     collisions on the true positions, of discs and of outlines
-//! outcome     results                                             Outcome, Run, Trace
+//! simulation_task     robots, missions, obstacles of a scenario
+//! forage              the paper's experiment (Section 4.2)
+//! shortest_paths      shortest ways around discs
+//! speed_limited_path  the path of a mission, and drives along it
+//! noise               random numbers by seed, robot and purpose
+//! true_state          the true state of a robot                  Disturbance
+//! pcr_controller      plans with collision regions every few seconds:
+//!   robot_estimate    a robot as it knows it
+//!   observer          where a robot can be
+//!   replan            motions for the rest of the paths
+//!   precedence_guard  passing orders in between
+//!   braking           speeds frame by frame
+//! steering            common code of the reactive controllers:
+//!   potential         artificial potential field
+//!   orca              optimal reciprocal collision avoidance
+//! true_world          true positions and missions, frame by frame
+//! frame_contact       collisions on the true positions, of discs and of outlines
+//! outcome             results
 //! ```
 //!
 //! Time advances in frames of the camera. The same task, seed and settings give the same run, down to the last digit;

@@ -2,15 +2,15 @@
 //! vehicles all use these.
 //!
 //! ```text
-//! stamp        time stamps, written
-//! validate     sizes, counts and numbers of a message               Limits
-//! decode       bytes to values                                      Refusal
-//! version      which edition of the standard                        Version
-//! topics       names of topics                                      Interface, Key, Kind
-//! header       header of every message                              Header
-//! order        orders                                               Order
-//! state        states, positions                                    State
-//! messages     the other messages                                   Connection, InstantActions
+//! timestamp    time stamps, written
+//! validate     sizes, counts and numbers of a message
+//! decode       bytes to values
+//! version      which edition of the standard
+//! topics       names of topics
+//! header       header of every message
+//! order        orders
+//! state        states, positions
+//! messages     the other messages
 //! order_state  an order as its receiver keeps it, updates stitched  OrderState
 //! ```
 

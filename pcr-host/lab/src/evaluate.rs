@@ -2,20 +2,20 @@
 //! written.
 //!
 //! ```text
-//! machine     the machine
-//! fleets      Table VI, and all methods on the same fleets
-//! shares      Fig. 12: time to find pairs, and to compute regions
-//! figures     Fig. 13 and 14
-//! grazing     contacts and near misses down to a ten-millionth of a metre
-//! memory      memory for a collision, and bytes to transmit it
-//! traffic     random missions in a real warehouse
-//! plans       costs of start delays, and proved bounds
-//! lifelong    fleets that run in the warehouse for an hour
-//! layouts     fleets that run on other layouts
-//! tasks       lifelong tasks on roadmaps, beside published figures
-//! execution   execution of plans on grids while robots are late
-//! roadmaps    tables of locks and of unsafe delays
-//! scale       fleets of up to 100,000 agents
+//! machine      the machine
+//! fleets       Table VI, and all methods on the same fleets
+//! time_shares  Fig. 12: time to find pairs, and to compute regions
+//! figures      Fig. 13 and 14
+//! near_misses  contacts and near misses down to a ten-millionth of a metre
+//! memory       memory for a collision, and bytes to transmit it
+//! traffic      random missions in a real warehouse
+//! plans        costs of start delays, and proved bounds
+//! lifelong     fleets that run in the warehouse for an hour
+//! layouts      fleets that run on other layouts
+//! tasks        lifelong tasks on roadmaps, beside published figures
+//! execution    execution of plans on grids while robots are late
+//! roadmaps     tables of locks and of unsafe delays
+//! scale        fleets of up to 100,000 agents
 //! ```
 
 mod execution;

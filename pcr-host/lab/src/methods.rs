@@ -1,10 +1,10 @@
 //! Methods of other libraries, beside those that `pcr compare` has.
 //!
 //! ```text
-//! casts    generic continuous collision detection
-//! program  libraries in C++, as programs beside this
-//! fcl      proximity of meshes by FCL
-//! box2d    the time of impact of Box2D
+//! shape_casts   generic continuous collision detection
+//! peer_program  libraries in C++, as programs beside this
+//! fcl           proximity of meshes by FCL
+//! box2d         the time of impact of Box2D
 //! ```
 
 mod box2d;

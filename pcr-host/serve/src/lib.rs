@@ -3,8 +3,8 @@
 //!
 //! ```text
 //! owned_path        paths that own their segments                      OwnedPath
-//! robot             state of a robot                                   Robot, RobotTraits
-//! event             messages that it sends without a request           Event
+//! robot             state of a robot                                   RobotTraits
+//! event             messages that it sends without a request
 //! request_error     reasons why it refuses a request                   RequestError
 //! setup_error       why a connection cannot be set up                  SetupError
 //! journal_entry     data that have to survive the process              JournalEntry
@@ -18,7 +18,7 @@
 //! metrics           metrics for Prometheus
 //! log               log on standard error                              LogWriter
 //! telemetry         data that the supervisor's thread publishes        Telemetry
-//! outbox            lines that wait for a client                       Outbox
+//! outbox            lines that wait for a client
 //! unanswered_lines  lines of a client without an answer, up to a number
 //! server            the thread that owns the supervisor                serve, ServerHandle
 //! connection_limit  connections, up to a number at a time              ConnectionPermit

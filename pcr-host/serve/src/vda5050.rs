@@ -1,15 +1,16 @@
 //! VDA 5050 (2.0, 2.1 and 3.0) between a fleet manager and vehicles; the messages are in `pcr_formats::vda5050`.
 //!
 //! ```text
-//! ahead      nodes and edges ahead, in states                       NodeAhead, EdgeAhead
-//! way        the path of an order, lengths of its nodes             Way
-//! lane       one vehicle between its manager and the supervisor     Lane
-//! bridge     the lanes of a fleet, no input or output of its own    Bridge
-//! tls        certificates of brokers
-//! mqtt       a connection to a broker                               Link
-//! claim      which of several bridges is active
-//! inbox      what has come and waits
-//! station    the bridge at its broker; only one is active           Station
+//! remaining_elements  nodes and edges ahead, in states
+//! edge_orientation    the heading of a vehicle on an edge
+//! order_path          the path of an order, lengths of its nodes                OrderPath
+//! vehicle_adapter     one vehicle between its manager and the supervisor
+//! bridge              the vehicles of a fleet, no input or output of its own
+//! tls                 certificates of brokers
+//! mqtt                a connection to a broker
+//! leader_election     which of several supervisors is active
+//! inbox               messages that have come and wait
+//! broker_session      the bridge at its broker; only one is active              BrokerSession
 //! ```
 
 pub mod bridge;

@@ -1,18 +1,18 @@
 //! Simulated VDA 5050 vehicles and a simulated fleet manager, to try and test a supervisor.
 //!
 //! ```text
-//! drive      along a way, from stop to stop                      Drive
-//! vehicle    one vehicle: messages in, messages out              Vehicle
-//! tell       messages of a vehicle
-//! record     true positions of vehicles, and their proof         Record, certify
-//! weather    messages that come late, twice, or out of order     Weather
-//! locks      locks that keep vehicles apart, for comparison      Locks
-//! manager    missions without end                                Manager
-//! audit      whether two vehicles hold the same place            Audit
-//! fleet      vehicles at a broker                                Fleet
-//! office     the manager at a broker                             Office
-//! world      a layout with vehicles and their manager            World
-//! yard       all of them with a supervisor, without a broker     Yard
+//! vehicle_motion      along a way, from stop to stop
+//! vehicle             one vehicle: messages in, messages out
+//! outgoing_messages   messages of a vehicle
+//! record              true positions of vehicles, and their proof      certify
+//! lossy_channel       messages that come late, twice, or out of order
+//! edge_reservations   locks that keep vehicles apart, for comparison
+//! manager             missions without end
+//! release_audit       whether two vehicles hold the same place
+//! simulated_fleet     vehicles at a broker
+//! manager_client      the manager at a broker
+//! simulated_site      a layout with vehicles and their manager
+//! offline_simulation  all of them with a supervisor, without a broker
 //! ```
 
 pub mod edge_reservations;

@@ -6,23 +6,23 @@
 //! the bound on its error, so that no count of roundings has to be believed.
 //!
 //! ```text
-//! twofold    106 bits
-//! ball       numbers with a bound on their error, of 53 or 106 bits; answers that may be a doubt
-//! plane      lines and arcs, parts of them, distances from a point          bounds of lemma 3
-//! cell       all of a part farther than, or within, so much of another      lemmas 3 and 5
-//! data       what is read: paths, motions, pieces
-//! dump       the same from the text that a microcontroller prints
-//! path       segments in the plane
-//! pair       the pieces of two segments, and what is found
-//! shares     one of two intervals: C-share                                  lemma 4
-//! segments   all contacts held, and nothing else: C-rect and C4             lemma 2
-//! travel     the travelled length over time, as the phases say
-//! regions    what is told of all pieces together: lengths and times         lemma 7
-//! table      all pairs; the margin
-//! mover      an agent in the plane over time                                lemma 8
-//! motion     discs that never touch
-//! delays     start delays with which two discs never touch
-//! outline    the same questions about convex, rounded outlines
+//! double_double      106 bits
+//! ball               numbers with a bound on their error, of 53 or 106 bits; answers that may be a doubt
+//! plane              lines and arcs, parts of them, distances from a point      bounds of lemma 3
+//! distance_claim     all of a part farther than, or within, so much of another  lemmas 3 and 5
+//! raw                what is read: paths, motions, pieces
+//! device_dump        the same from the text that a microcontroller prints
+//! path               segments in the plane
+//! pair               the pieces of two segments, and what is found
+//! branches           one of two intervals: C-share                              lemma 4
+//! segments           all contacts held, and nothing else: C-rect and C4         lemma 2
+//! arc_length_motion  the travelled length over time, as the phases say
+//! regions            what is told of all pieces together: lengths and times     lemma 7
+//! table              all pairs; the margin
+//! moving_disc        an agent in the plane over time                            lemma 8
+//! motion             discs that never touch
+//! delays             start delays with which two discs never touch
+//! outline            the same questions about convex, rounded outlines
 //! ```
 //!
 //! Why that proves what it says is in `docs/theory/certificates.md` of the repository, with the lemmas by these numbers.
