@@ -1,6 +1,6 @@
 //! Missions of one's own: the answer of `pcr traffic --missions`.
 
-use crate::lifelong::{ClosureEffect, EventResult, MissionResult, MissionRun, run_missions};
+use crate::lifelong::{ClosureEffect, EventResult, MissionResult, MissionRun, RunCertificate, run_missions};
 use pcr_formats::import::ImportedLayout;
 use pcr_formats::missions::{ClosedElement, FleetMissions, MissionRequest};
 use pcr_formats::scenario::Scenario;
@@ -142,21 +142,20 @@ pub struct WaitEntry {
     pub y: f64,
 }
 
-/// The proof of a run by its scenario. Turns in place are nanometres there, and rounding of a long way before them can move them in time.
-/// So a contact there is no proof that vehicles touched: it is not decided.
-fn certificate(run: &Scenario) -> Result<MotionCertificate, String> {
-    let mut found = MotionCertificate::prove::<f64>(run).map_err(|error| error.to_string())?;
-    if found.verdict == "contact" {
-        found.verdict = "undecided";
-        found.undecided.append(&mut found.contacts);
-        found.error =
-            Some("in the scenario of the run, rounding moves turns in place, so that it is not proved".into());
+/// The proof of a run by its scenario, or, where the scenario is not proved, by what was recorded; and whether it is by the scenario.
+fn certificate(run: &MissionRun) -> Result<(MotionCertificate, bool), String> {
+    let of_scenario = MotionCertificate::prove::<f64>(&run.scenario).map_err(|error| error.to_string())?;
+    if of_scenario.verdict == "proved" {
+        return Ok((of_scenario, true));
     }
-    Ok(found)
+    let RunCertificate { verdict, steps, ref error, .. } = run.certificate;
+    let (contacts, undecided, error) = (Vec::new(), Vec::new(), error.clone());
+    Ok((MotionCertificate { verdict, steps, contacts, undecided, error, ..of_scenario }, false))
 }
 
 impl MissionsReport {
-    /// Runs the missions of a fleet on a layout. Also returns the run as a scenario. `told` gets the simulated time \[s\] and the number of
+    /// Runs the missions of a fleet on a layout. Also returns the run as a scenario, unless rounding moves its turns in place, so that it is
+    /// not proved as a scenario. `told` gets the simulated time \[s\] and the number of
     /// missions that are over.
     ///
     /// # Errors
@@ -165,9 +164,9 @@ impl MissionsReport {
         imported: &ImportedLayout,
         fleet: &FleetMissions,
         told: &dyn Fn(f64, usize),
-    ) -> Result<(Self, Scenario), String> {
+    ) -> Result<(Self, Option<Scenario>), String> {
         let run = run_missions(imported, fleet, told)?;
-        let certificate = certificate(&run.scenario)?;
+        let (certificate, is_exact) = certificate(&run)?;
         let node = |place: usize| imported.layout.nodes[place].id.to_string();
         let id = |vehicle: usize| fleet.vehicles[vehicle].id.clone();
         let missions: Vec<MissionEntry> = fleet
@@ -237,7 +236,7 @@ impl MissionsReport {
         };
         let MissionRun { mut scenario, .. } = run;
         scenario.warnings.clone_from(&imported.layout.warnings);
-        Ok((report, scenario))
+        Ok((report, is_exact.then_some(scenario)))
     }
 
     /// Whether all missions were done, and the run is proved to be free of contact.

@@ -201,7 +201,10 @@ impl TrafficArgs {
         let answer = MissionsReport::run(imported, &fleet, &told);
         drop(progress);
         let (mut answer, mut scenario) = answer.map_err(wrong)?;
-        [&mut answer.warnings, &mut scenario.warnings].into_iter().for_each(acknowledge);
+        acknowledge(&mut answer.warnings);
+        if let Some(scenario) = &mut scenario {
+            acknowledge(&mut scenario.warnings);
+        }
         let mut out = self.printed.out(false);
         match self.printed.form() {
             OutputFormat::Table => report::missions_table(&answer, &mut out)?,
@@ -210,11 +213,11 @@ impl TrafficArgs {
         }
         out.flush()?;
         if let Some(directory) = &self.output {
-            // Its readers would take what is not proved for what happened.
-            if answer.certificate.verdict != "proved" {
-                let problem = "the run is not proved, so that run.json is not written";
+            // Its readers would take it for what happened.
+            let Some(scenario) = scenario else {
+                let problem = "run.json is not written: in a scenario of this run, rounding moves turns in place";
                 return Err(CliError::wrong(directory, problem));
-            }
+            };
             // Without the collision maps of all vehicles: in hours they have too much for a picture.
             let ground = LayoutLevelView { imported, level: imported.layout.largest_level() };
             map::draw(&scenario, Some(&[]), Some(ground), directory, &mut notes())?;

@@ -51,13 +51,13 @@ impl RunCertificate {
         let mut widened = false;
         let records: Result<Vec<RecordedMotion>, String> = robots
             .iter_mut()
-            .zip(&mut window.places)
+            .zip(window.places.iter_mut().zip(&window.layers))
             .enumerate()
-            .map(|(id, (robot, place))| {
+            .map(|(id, (robot, (place, &layer)))| {
                 robot.stops.clear();
                 let (phases, trail, since) = robot.report(place.since);
                 let (mut record, ends, gaps) =
-                    RecordedMotion::of(site, id as u64, [begin, end], &phases, (&trail, since), *place)?;
+                    RecordedMotion::of(site, (id as u64, layer), [begin, end], &phases, (&trail, since), *place)?;
                 *place = WindowStart::of(site, robot);
                 // The recorded motion has to lead to where the robot is; otherwise nothing is certified. Two edges that meet at a node
                 // may end slightly beside each other.
@@ -65,7 +65,7 @@ impl RunCertificate {
                 if apart > ROUNDING + gaps + 2.0 * site.position_error {
                     return Err(format!("robot {id}: its record ends at {:?}, it is at {:?}", ends.at, place.at));
                 }
-                if site.has_outline() && wrapped(ends.heading - place.heading).abs() > JUMP {
+                if site.is_outline(layer) && wrapped(ends.heading - place.heading).abs() > JUMP {
                     let [recorded, now] = [ends.heading, place.heading];
                     return Err(format!("robot {id}: its record ends with the heading {recorded}, it has {now}"));
                 }
@@ -103,6 +103,8 @@ impl RunCertificate {
 pub(super) struct CheckWindow {
     begin: f64,
     places: Vec<WindowStart>,
+    /// The layer of each robot.
+    layers: Vec<usize>,
 }
 
 #[derive(Clone, Copy, Debug)]
@@ -124,7 +126,8 @@ impl WindowStart {
 
 impl CheckWindow {
     pub(super) fn new(site: &RouteGraph, robots: &[LifelongRobot]) -> Self {
-        Self { begin: 0.0, places: robots.iter().map(|robot| WindowStart::of(site, robot)).collect() }
+        let layers = robots.iter().map(|robot| site.layer_of(robot.way.end())).collect();
+        Self { begin: 0.0, places: robots.iter().map(|robot| WindowStart::of(site, robot)).collect(), layers }
     }
 }
 
@@ -134,18 +137,18 @@ enum RecordedMotion {
     Outline(RawBody),
 }
 
-/// The contacts of these motions, all of discs or all of outlines.
+/// The contacts of these motions.
 fn found(records: &[RecordedMotion], time: [f64; 2]) -> Result<MotionFindings, String> {
-    let (mut discs, mut outlines) = (Vec::new(), Vec::new());
-    for record in records {
-        match record {
-            RecordedMotion::Disc(agent) => discs.push(Mover::new(agent, time)?),
-            RecordedMotion::Outline(body) => outlines.push(Body::new(body)?),
-        }
+    let discs = records.iter().map(|record| match record {
+        RecordedMotion::Disc(agent) => Some(agent),
+        RecordedMotion::Outline(_) => None,
+    });
+    if let Some(discs) = discs.collect::<Option<Vec<_>>>() {
+        let movers: Result<Vec<Mover>, String> = discs.into_iter().map(|agent| Mover::new(agent, time)).collect();
+        return Ok(meetings(&movers?));
     }
-    if outlines.is_empty() {
-        return Ok(meetings(&discs));
-    }
+    let bodies: Vec<RawBody> = records.iter().map(RecordedMotion::body).collect();
+    let outlines: Vec<Body<'_>> = bodies.iter().map(Body::new).collect::<Result<_, _>>()?;
     let driven: Result<Vec<Driven<'_>>, String> = outlines.iter().map(|body| Driven::new(body, time)).collect();
     Ok(outline::motion::meetings(&driven?))
 }
@@ -155,15 +158,15 @@ impl RecordedMotion {
     /// sum of the gaps where shapes of the layout do not meet: the path here has no gaps, so it may be off by that sum \[m\].
     fn of(
         site: &RouteGraph,
-        id: u64,
+        (id, layer): (u64, usize),
         window: [f64; 2],
         phases: &[RobotPhase],
         (trail, since): (&[usize], f64),
         begin: WindowStart,
     ) -> Result<(Self, WindowStart, f64), String> {
         let (travel, length) = travel(id, window, phases)?;
-        if site.has_outline() {
-            return Ok(body(site, id, travel, length, (trail, since), begin));
+        if site.is_outline(layer) {
+            return Ok(body(site, (id, layer), travel, length, (trail, since), begin));
         }
         let shapes: Vec<PlacedSegment> =
             trail.iter().flat_map(|&atom| site.atoms[atom].shapes.iter().copied()).collect();
@@ -174,9 +177,38 @@ impl RecordedMotion {
         let gaps: f64 = shapes.windows(2).map(gap).filter(|gap| *gap > NO_GAP).sum();
         let parts = cut(&shapes, since, length);
         let end = parts.last().map_or(begin.at, PlacedSegment::end);
-        let (path, radius) = (path(&parts, begin.at, length), site.layers[0].shape.reach());
+        let (path, radius) = (path(&parts, begin.at, length), site.layers[layer].shape.reach());
         let agent = RawAgent { id, radius, path, travel: Some(travel) };
         Ok((Self::Disc(agent), WindowStart { at: end, ..begin }, gaps))
+    }
+
+    /// Returns the body that moves so. A disc keeps its heading, because it turns without moving.
+    fn body(&self) -> RawBody {
+        match self {
+            Self::Outline(body) => body.clone(),
+            Self::Disc(RawAgent { id, radius, path, travel }) => RawBody {
+                id: *id,
+                outline: RawOutline { corners: vec![[0.0; 2]], radius: *radius },
+                start: path.start,
+                direction: path.heading,
+                segments: path
+                    .segments
+                    .iter()
+                    .map(|segment| RawBodySegment {
+                        course: segment.radius.map_or(RawCourse::Line, |radius| RawCourse::Arc { radius }),
+                        length: segment.length,
+                        turns: segment.turns.clone(),
+                        heading: RawHeading::Steady(RawAngle::Radians(0.0)),
+                        from: segment.from,
+                        to: segment.to,
+                    })
+                    .collect(),
+                rounding: path.rounding,
+                jump: JUMP,
+                step: path.step,
+                travel: travel.clone(),
+            },
+        }
     }
 
     /// Makes the robot larger by so much all around \[m\].
@@ -217,13 +249,13 @@ fn travel(id: u64, [begin, end]: [f64; 2], phases: &[RobotPhase]) -> Result<(Raw
 /// The motion of an outline: the segments of these atoms, with their turns in place.
 fn body(
     site: &RouteGraph,
-    id: u64,
+    (id, layer): (u64, usize),
     travel: RawMotion,
     length: f64,
     (trail, since): (&[usize], f64),
     begin: WindowStart,
 ) -> (RecordedMotion, WindowStart, f64) {
-    let (corners, radius) = site.layers[0].shape.corners();
+    let (corners, radius) = site.layers[layer].shape.corners();
     let (mut before, mut left, mut gaps, mut from) = (since, length, 0.0, 0.0);
     let mut segments: Vec<RawBodySegment> = Vec::new();
     let (mut direction, mut heading) = (begin.heading, begin.heading);
@@ -344,4 +376,34 @@ fn path(shapes: &[PlacedSegment], at: [f64; 2], length: f64) -> raw::RawPath {
         segments.push(RawSegment { length: 0.0, radius: None, turns: Vec::new(), from: 0.0, to: 0.0 });
     }
     raw::RawPath { start, heading: path_heading, segments, rounding: f64::EPSILON * length.max(1.0) * 16.0, step: 0.0 }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use pcr_certify::raw::{RawPath, RawPhase};
+
+    /// A robot that goes 4 m to the east at 1 m/s, past the origin.
+    fn path(start: [f64; 2]) -> (RawPath, RawMotion) {
+        let segments = vec![RawSegment { length: 4.0, radius: None, turns: Vec::new(), from: 0.0, to: 4.0 }];
+        let path = RawPath { start, heading: RawAngle::Radians(0.0), segments, rounding: 1e-14, step: 0.0 };
+        let phases = vec![RawPhase { time: [0.0, 4.0], length: [0.0, 4.0], speed: [1.0; 2] }];
+        (path, RawMotion { start: 0.0, phases, lag: 0.0, time_excess: 0.0 })
+    }
+
+    #[test]
+    fn discs_and_outlines_are_judged_together() {
+        for (beside, contacts) in [(0.56, 0), (0.54, 1)] {
+            let (own, travel) = path([-2.0, 0.0]);
+            let disc = RecordedMotion::Disc(RawAgent { id: 1, radius: 0.25, path: own, travel: Some(travel) });
+            // A rectangle, 0.6 m wide, that drives beside the disc.
+            let (its, travel) = path([-2.0, beside]);
+            let corners = vec![[-0.4, -0.3], [0.4, -0.3], [0.4, 0.3], [-0.4, 0.3]];
+            let other = RawAgent { id: 2, radius: 0.0, path: its, travel: Some(travel) };
+            let mut body = RecordedMotion::Disc(other).body();
+            body.outline.corners = corners;
+            let found = found(&[disc, RecordedMotion::Outline(body)], [0.0, 4.0]).expect("motions");
+            assert_eq!((found.contacts.len(), found.undecided.len()), (contacts, 0), "{beside}");
+        }
+    }
 }

@@ -1,6 +1,7 @@
 //! A run of the missions of a file: until all are done or given up, without random delays.
 
 use super::endpoints::{Endpoints, WellFormedness};
+use super::motion_record::{CheckWindow, RunCertificate};
 use super::own_missions::{ClosureEffect, MissionOutcome, OwnEvent, OwnMission, OwnMissions, OwnWait};
 use super::random_draws::STEP;
 use super::robot::LifelongRobot;
@@ -25,8 +26,11 @@ pub struct MissionRun {
     pub missions: Vec<MissionResult>,
     /// Where vehicles waited for others, in the order of time.
     pub waits: Vec<MissionWait>,
-    /// The whole run as a scenario, with an agent for each vehicle.
+    /// The whole run as a scenario, with an agent for each vehicle. Its turns in place are so short that rounding of a long way
+    /// before them can move them in time.
     pub scenario: Scenario,
+    /// Result of the independent checker for the motions as they were recorded, with their turns in place.
+    pub certificate: RunCertificate,
     /// What each closure did, in the order of the file.
     pub closures: Vec<EventResult>,
     /// What each breakdown did, in the order of the file.
@@ -87,6 +91,7 @@ pub fn run_missions(
 ) -> Result<MissionRun, String> {
     let mut run = LifelongState::of_fleet(imported, fleet)?;
     run.refuse_impossible();
+    let window = CheckWindow::new(&run.site, &run.robots);
     let (mut still, mut tick) = (0.0, 0);
     loop {
         let now = tick as f64 * STEP;
@@ -117,7 +122,7 @@ pub fn run_missions(
         still = if moves { 0.0 } else { still + STEP };
         tick += 1;
     }
-    run.result(fleet, &imported.layout.name, tick as f64 * STEP)
+    run.result(fleet, &imported.layout.name, tick as f64 * STEP, window)
 }
 
 impl LifelongState {
@@ -326,7 +331,13 @@ impl LifelongState {
     }
 
     /// The results of a run of some seconds.
-    fn result(self, fleet: &FleetMissions, name: &str, duration: f64) -> Result<MissionRun, String> {
+    fn result(
+        mut self,
+        fleet: &FleetMissions,
+        name: &str,
+        duration: f64,
+        mut window: CheckWindow,
+    ) -> Result<MissionRun, String> {
         let Some(own) = &self.own else { return Err("there are no missions".into()) };
         let missions = own.missions.iter().map(|it| MissionResult {
             vehicle: it.vehicle,
@@ -362,6 +373,8 @@ impl LifelongState {
         let end = |robot: &LifelongRobot| robot.way.node(&self.site, robot.at).map(|node| node % self.site.places());
         let ends = self.robots.iter().map(end).collect();
         let scenario = Scenario::new(name, agents);
-        Ok(MissionRun { missions, waits, scenario, closures, breakdowns, ends, duration })
+        let mut certificate = RunCertificate::new();
+        certificate.window(&self.site, &mut self.robots, &mut window, duration);
+        Ok(MissionRun { missions, waits, scenario, certificate, closures, breakdowns, ends, duration })
     }
 }

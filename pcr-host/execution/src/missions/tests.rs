@@ -3,6 +3,7 @@
 use super::*;
 use pcr_formats::import::{ImportOptions, InputFormat, Warnings, roads};
 use pcr_formats::missions::{MissionSource, RecordKind};
+use pcr_formats::splitmix64::SplitMix64;
 use pcr_planning::check::CheckReport;
 
 /// A site with these nodes; edges with their ids, from node to node.
@@ -43,15 +44,17 @@ fn square() -> ImportedLayout {
     site(&points, &two_way(&[[0, 1], [1, 2], [2, 3], [3, 0], [0, 4], [1, 5], [2, 6], [3, 7]]))
 }
 
-/// The report of a file, of which the run is certified, also as it is written and read again.
+/// The report of a file, of which the run is certified, also as it is written and read again, if it can be.
 fn report(imported: &ImportedLayout, text: &str) -> MissionsReport {
     let source = MissionSource { text, kind: RecordKind::Mission };
     let fleet = FleetMissions::read(&[source], &imported.layout, &imported.vehicle).expect("missions");
     let (report, scenario) = MissionsReport::run(imported, &fleet, &|_, _| {}).expect("a run");
     assert_eq!(report.certificate.verdict, "proved", "{report:?}");
-    let read = Scenario::from_json(&scenario.to_json()).expect("a scenario");
-    assert_eq!(CheckReport::compute::<f64>(&read, false).expect("a check").conflicts.len(), 0);
-    assert_eq!(read.agents.len(), fleet.vehicles.len());
+    if let Some(scenario) = scenario {
+        let read = Scenario::from_json(&scenario.to_json()).expect("a scenario");
+        assert_eq!(CheckReport::compute::<f64>(&read, false).expect("a check").conflicts.len(), 0);
+        assert_eq!(read.agents.len(), fleet.vehicles.len());
+    }
     report
 }
 
@@ -234,4 +237,52 @@ fn who_is_behind_a_broken_vehicle_stops_behind_it() {
         {"kind": "breakdown", "vehicle": "a", "at": 12, "until": 60}"#,
     );
     assert!(report.done == 2 && finish(&report, "m2") > Some(60.0), "{report:?}");
+}
+
+/// Missions at random on a real site, for vehicles of three types, with closures and breakdowns or without.
+#[test]
+fn runs_of_many_missions_on_a_real_site_are_certified() {
+    let path = concat!(env!("CARGO_MANIFEST_DIR"), "/../../tests/data/real/nav2/aws_graph.geojson");
+    let text = std::fs::read_to_string(path).expect("a layout");
+    let options = ImportOptions { radius: Some(0.4), ..ImportOptions::default() };
+    let imported = roads(InputFormat::Nav2, &text, &options, &mut Warnings::default()).expect("a layout");
+    let layout = &imported.layout;
+    let types = [r#""radius": 0.4"#, r#""length": 1.0, "width": 0.6, "speed": 0.8"#, r#""radius": 0.3, "speed": 1.5"#];
+    for seed in 1..=4 {
+        let mut random = SplitMix64(seed);
+        let nodes: Vec<usize> = (0..layout.nodes.len()).collect();
+        let mut starts: Vec<usize> = Vec::new();
+        for node in random.shuffled(&nodes) {
+            let [x, y] = layout.nodes[node].point;
+            let far = |&other: &usize| {
+                let [u, v] = layout.nodes[other].point;
+                f64::hypot(x - u, y - v) > 1.7
+            };
+            if starts.len() < 8 && starts.iter().all(far) {
+                starts.push(node);
+            }
+        }
+        let id = |node: usize| layout.nodes[node].id.to_string();
+        let mut lines: Vec<String> = starts
+            .iter()
+            .enumerate()
+            .map(|(k, &start)| {
+                format!(r#"{{"kind": "vehicle", "id": "v{k}", "start": {}, {}}}"#, id(start), types[k % types.len()])
+            })
+            .collect();
+        for k in 0..30 {
+            let [from, to] = [(); 2].map(|()| id(random.below(nodes.len())));
+            let release = random.below(300);
+            lines.push(format!(r#"{{"id": "m{k}", "from": {from}, "to": {to}, "release": {release}}}"#));
+        }
+        let all = report(&imported, &lines.join("\n"));
+        assert!(all.is_sound() && all.done == 30, "{seed}: {all:?}");
+        for _ in 0..4 {
+            let (edge, at) = (&layout.edges[random.below(layout.edges.len())].id, random.below(200));
+            lines.push(format!(r#"{{"kind": "closure", "edge": {edge}, "at": {at}, "until": {}}}"#, at + 100));
+        }
+        lines.push(format!(r#"{{"kind": "breakdown", "vehicle": "v{}", "at": 60, "until": 160}}"#, random.below(8)));
+        let some = report(&imported, &lines.join("\n"));
+        assert!(some.done == 30, "{seed}: {some:?}");
+    }
 }
