@@ -121,10 +121,6 @@ impl SimulateArgs {
             true => forage::task(self.seed, self.trips.unwrap_or(TRIPS)),
             false => {
                 let scenario = scenario(&file, &self.import)?;
-                if let Some(agent) = scenario.agents.iter().find(|agent| agent.changes_gear()) {
-                    let problem = "simulated robots do not drive in reverse gear yet";
-                    return Err(CliError::wrong(&file, format!("agent {}: {problem}", agent.display_name())));
-                }
                 let mut task = SimulationTask::from_scenario(&scenario).map_err(named)?;
                 acknowledge(&mut task.warnings);
                 // Those of the scenario are said already.

@@ -20,7 +20,7 @@ fn agent(id: u64, width: f64, [x, y, heading]: [f64; 3], path: &str) -> String {
 }
 
 fn task(agents: &[String]) -> SimulationTask {
-    let text = format!(r#"{{ "agents": [ {} ] }}"#, agents.join(", "));
+    let text = format!(r#"{{ "version": 2, "agents": [ {} ] }}"#, agents.join(", "));
     SimulationTask::from_scenario(&Scenario::from_json(&text).expect("a scenario")).expect("a task")
 }
 
@@ -106,6 +106,34 @@ fn outlines_turn_in_place_and_others_wait_for_what_they_sweep() {
 }
 
 #[test]
+fn vehicles_change_their_gear_and_stand_there() {
+    // Into a bay, where it turns, and out of it in reverse gear on another arc; the other one passes in front of the bay.
+    let shunting = r#"{ "kind": "line", "length": 2, "gear": "reverse" }, { "kind": "arc", "radius": 1, "sweep": 1, "gear": "reverse" },
+        { "kind": "arc", "radius": 1, "sweep": 1 }, { "kind": "turn", "sweep": -0.5 }, { "kind": "line", "length": 2 },
+        { "kind": "line", "length": 1, "gear": "reverse" }"#;
+    let passing = r#"{ "kind": "line", "length": 9 }"#;
+    let disc = r#"{ "id": 3, "radius": 0.2, "v_max": 1, "a_max": 0.5, "start": { "x": -3.5, "y": 3, "heading": 1.57079633 },
+        "path": [ { "kind": "line", "length": 2 }, { "kind": "line", "length": 6, "gear": "reverse" } ] }"#;
+    let fleet = task(&[agent(1, 0.4, [0.0; 3], shunting), agent(2, 0.4, [3.0, 1.0, PI], passing), disc.to_owned()]);
+    assert_eq!(fleet.warnings, [""; 0]);
+    for seed in 0..6 {
+        let SimulationRun { run, trace, .. } = driven(&fleet, seed);
+        assert_eq!((run.not_done, run.collisions.len()), (0, 0), "seed {seed}: {run:?}");
+        assert_eq!(run.planning.expect("a supervisor plans").authority_overruns, 0, "seed {seed}");
+        let (headings, end) = (&trace.headings[0], trace.headings[0].len() - 1);
+        // An arc turns it by its sweep in either gear.
+        assert!((headings[end] - 1.5).abs() < 1e-9, "{}", headings[end]);
+        let fastest = headings.windows(2).map(|pair| (pair[1] - pair[0]).abs()).fold(0.0, f64::max);
+        assert!(fastest <= 1.0 / 30.0 + 1e-9, "{fastest}");
+        // The disc ends 4 m below its start, and has been at the end of its first line.
+        let disc = &trace.positions[2];
+        assert!((disc[disc.len() - 1][1] + 1.0).abs() < 0.01, "{:?}", disc[disc.len() - 1]);
+        let top = disc.iter().map(|at| at[1]).fold(f64::MIN, f64::max);
+        assert!((top - 5.0).abs() < 0.01, "{top}");
+    }
+}
+
+#[test]
 fn random_fleets_of_rectangles_run_without_a_contact() {
     let mut random = SplitMix64(7);
     let (mut done, mut all) = (0, 0);
@@ -116,11 +144,12 @@ fn random_fleets_of_rectangles_run_without_a_contact() {
             let at = [6.0 * heading.cos() + 2.0 * random.unit(), 6.0 * heading.sin() + 2.0 * random.unit()];
             let path = format!(
                 r#"{{ "kind": "line", "length": {} }}, {{ "kind": "arc", "radius": {}, "sweep": {} }}, {{ "kind": "turn", "sweep": {} }},
-                   {{ "kind": "line", "length": 4 }}"#,
+                   {{ "kind": "line", "length": 4, "gear": "{}" }}"#,
                 3.0 + 3.0 * random.unit(),
                 0.5 + random.unit(),
                 4.0 * random.unit() - 2.0,
-                3.0 * random.unit() - 1.5
+                3.0 * random.unit() - 1.5,
+                if random.unit() < 0.5 { "reverse" } else { "forward" }
             );
             agent(k as u64 + 1, width, [at[0], at[1], heading + PI], &path)
         });

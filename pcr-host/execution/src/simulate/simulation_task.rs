@@ -110,10 +110,10 @@ impl SimulationTask {
             let tops = tops(agent);
             let top = |segment| fleet.source(place, segment).and_then(|source| tops.get(source).copied());
             let body = ConvexBody::of_agent(agent).map_err(|_| ComputationError::Robot(agent.id))?;
-            let course = if body.is_disc() {
+            let course = if body.is_disc() && !agent.changes_gear() {
                 SpeedLimitedPath::of(&motion).with_speed_limits(|segment| top(segment).unwrap_or(f64::INFINITY))
             } else {
-                SpeedLimitedPath::of_outline(agent, &tops).map_err(|_| ComputationError::Robot(agent.id))?
+                SpeedLimitedPath::of_agent(agent, &tops).map_err(|_| ComputationError::Robot(agent.id))?
             };
             if body.excess() > 0.0 {
                 warnings.push(WarningCode::ConvexHull.text(format_args!(
@@ -217,7 +217,7 @@ fn tops(agent: &Agent) -> Vec<f64> {
 /// the duration of the profile. (Every profile from rest to rest does so by itself.) If it only turns in place, the durations of its
 /// turns contain all ramps, and 1 m/s² adds none.
 fn limits(agent: &Agent) -> Limits<f64> {
-    let turns = |segment: &PathSegment| matches!(segment, PathSegment::Arc { radius: TURN, .. });
+    let turns = |segment: &PathSegment| matches!(segment, PathSegment::Arc { radius: TURN, .. } | PathSegment::Cusp);
     match &agent.motion {
         MotionSpec::RestToRest { v_max, a_max } => Limits { speed: *v_max, acceleration: *a_max },
         MotionSpec::Profile { v0, pieces } => {

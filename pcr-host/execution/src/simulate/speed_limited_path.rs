@@ -7,6 +7,7 @@ use pcr_core::{
 };
 use pcr_formats::scenario::{Agent, KINK, PathSegment, TURN};
 use pcr_planning::fleet::{ConvexBody, speed};
+use std::f64::consts::PI;
 
 /// Travelled length for each radian of a turn in place of an outline \[m\]: so short that ramps of the speed take no time there.
 const LEVER: f64 = 1e-3;
@@ -14,18 +15,34 @@ const LEVER: f64 = 1e-3;
 /// An outline has turned if less than this is left of a turn \[rad\].
 const TURNED: f64 = 1e-4;
 
+/// Time that a change of gear takes \[s\]: none, but for a frame in which the robot stands.
+const SHIFT: f64 = 1e-9;
+
 /// A path of lines and arcs, with speed limits.
 #[derive(Clone, Debug)]
 pub struct SpeedLimitedPath {
     segments: Vec<Segment<f64>>,
-    /// Speed limit of each segment; infinite if it has none \[m/s\].
-    tops: Vec<f64>,
+    limits: Vec<SegmentLimit>,
 }
 
-/// A turn in place.
+/// How a segment is driven.
+#[derive(Clone, Copy, Debug)]
+struct SegmentLimit {
+    /// Speed limit; infinite if there is none \[m/s\].
+    top: f64,
+    /// In reverse gear.
+    reverse: bool,
+}
+
+impl SegmentLimit {
+    /// In forward gear, without a speed limit.
+    const NONE: Self = Self { top: f64::INFINITY, reverse: false };
+}
+
+/// A place where a robot stands: a turn in place, or a change of gear.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct TurnInPlace {
-    /// Index of its segment.
+    /// Index of its segment: that of the turn, or the one before the change of gear.
     pub(super) segment: usize,
     /// Length along the course \[m\].
     pub(super) at: f64,
@@ -33,47 +50,47 @@ pub(super) struct TurnInPlace {
     pub(super) duration: f64,
 }
 
-/// Robots of a simulation drive ahead.
-const GEAR: InvalidInput = InvalidInput::Disconnected("path in reverse gear");
-
 impl SpeedLimitedPath {
-    /// A course along these segments from a pose.
+    /// A course along these segments from a pose, without turns in place that have a length.
     ///
     /// # Errors
     /// [`InvalidInput`] if a length or a coordinate is out of range.
     pub fn new(start: Pose<f64>, path: &[PathSegment]) -> Result<Self, InvalidInput> {
-        let mut course = Self::standing(start)?;
-        for segment in path {
-            match *segment {
-                PathSegment::Line { length } => course.push(Curve::Line, length, f64::INFINITY)?,
-                PathSegment::Cusp => return Err(GEAR),
-                PathSegment::Arc { radius, sweep } => {
-                    let turn = if sweep > 0.0 { TurnSide::Left } else { TurnSide::Right };
-                    course.push(Curve::Arc { radius, turn }, radius * sweep.abs(), f64::INFINITY)?;
-                }
-            }
-        }
-        course.path()?;
-        Ok(course)
+        Self::along(start, path, |_| f64::INFINITY, 0.0)
     }
 
-    /// The course of an agent with an outline, with the speed limits of its segments \[m/s\], infinite where there are no more. Its turns in
-    /// place have a length.
+    /// The course of an agent with an outline or with gears, with the speed limits of its segments \[m/s\], infinite where there are no
+    /// more. Its turns in place have a length.
     ///
     /// # Errors
     /// As [`SpeedLimitedPath::new`].
-    pub(super) fn of_outline(agent: &Agent, tops: &[f64]) -> Result<Self, InvalidInput> {
+    pub(super) fn of_agent(agent: &Agent, tops: &[f64]) -> Result<Self, InvalidInput> {
         let [x, y, heading] = agent.start;
-        let mut course = Self::standing(Pose { position: Point::new(x, y), heading: Radians(heading) })?;
-        for (place, segment) in agent.path.iter().enumerate() {
-            let top = tops.get(place).copied().unwrap_or(f64::INFINITY);
+        let start = Pose { position: Point::new(x, y), heading: Radians(heading) };
+        Self::along(start, &agent.path, |place| tops.get(place).copied().unwrap_or(f64::INFINITY), TURN)
+    }
+
+    /// A course along segments with speed limits \[m/s\], on which arcs up to a radius \[m\] are turns in place.
+    fn along(
+        start: Pose<f64>,
+        path: &[PathSegment],
+        top: impl Fn(usize) -> f64,
+        largest_turn: f64,
+    ) -> Result<Self, InvalidInput> {
+        let mut reverse = false;
+        let mut course = Self::standing(start)?;
+        for (place, segment) in path.iter().enumerate() {
+            let top = top(place);
             let whole = segment.turns();
             let (curve, length, top) = match *segment {
                 PathSegment::Line { length } => (Curve::Line, length, top),
-                PathSegment::Cusp => return Err(GEAR),
+                PathSegment::Cusp => {
+                    reverse = !reverse;
+                    continue;
+                }
                 PathSegment::Arc { radius, sweep } => {
                     let turn = if sweep > 0.0 { TurnSide::Left } else { TurnSide::Right };
-                    if radius <= TURN {
+                    if radius <= largest_turn {
                         (Curve::Pivot { lever: LEVER, turn }, LEVER * sweep.abs(), top * (LEVER / radius))
                     } else {
                         (Curve::Arc { radius, turn }, radius * sweep.abs(), top)
@@ -81,7 +98,7 @@ impl SpeedLimitedPath {
                 }
             };
             for _ in 0..whole as usize {
-                course.push(curve, length / whole, top)?;
+                course.push(curve, length / whole, SegmentLimit { top, reverse })?;
             }
         }
         course.path()?;
@@ -93,46 +110,53 @@ impl SpeedLimitedPath {
     /// # Errors
     /// As [`SpeedLimitedPath::new`].
     pub fn standing(pose: Pose<f64>) -> Result<Self, InvalidInput> {
-        Ok(Self { segments: vec![Segment::standing(pose)?], tops: vec![f64::INFINITY] })
+        Ok(Self { segments: vec![Segment::standing(pose)?], limits: vec![SegmentLimit::NONE] })
     }
 
     /// A course to stand at its beginning.
     pub(super) fn beginning(&self) -> Self {
         // The start of a segment is always a pose in range.
-        let pose = self.path().map(|path| path.pose_at(0.0));
-        Self { segments: pose.and_then(Segment::standing).into_iter().collect(), tops: vec![f64::INFINITY] }
+        let pose = self.path().map(|path| Pose { heading: Radians(self.heading_at(0.0)), ..path.pose_at(0.0) });
+        Self { segments: pose.and_then(Segment::standing).into_iter().collect(), limits: vec![SegmentLimit::NONE] }
     }
 
-    /// The path of a motion.
+    /// The path of a motion that does not change its gear.
     pub fn of(motion: &Motion<'_, f64>) -> Self {
         let segments = motion.path().segments().to_vec();
-        Self { tops: vec![f64::INFINITY; segments.len()], segments }
+        Self { limits: vec![SegmentLimit::NONE; segments.len()], segments }
     }
 
     /// Sets the speed limit of each segment \[m/s\], by its index; infinite for none. For a turn in place it is its length
     /// divided by its duration.
     #[must_use]
     pub fn with_speed_limits(self, top: impl Fn(usize) -> f64) -> Self {
-        Self { tops: (0..self.segments.len()).map(top).collect(), ..self }
+        let limits = self.limits.into_iter().enumerate();
+        Self { limits: limits.map(|(place, limit)| SegmentLimit { top: top(place), ..limit }).collect(), ..self }
     }
 
-    fn push(&mut self, curve: Curve<f64>, length: f64, top: f64) -> Result<(), InvalidInput> {
-        let [.., last] = self.segments.as_slice() else {
+    fn push(&mut self, curve: Curve<f64>, length: f64, limit: SegmentLimit) -> Result<(), InvalidInput> {
+        let (Some(last), Some(before)) = (self.segments.last_mut(), self.limits.last()) else {
             return Ok(());
         };
+        if length <= 0.0 {
+            return Ok(());
+        }
+        // There and back by the same number, so that the body keeps its heading.
+        if limit.reverse != before.reverse {
+            *last = last.turned(Radians(if limit.reverse { PI } else { -PI }))?;
+        }
         let next = match curve {
             Curve::Line => last.then_line(length)?,
             Curve::Arc { radius, turn } => last.then_arc(radius, turn, length)?,
             Curve::Pivot { lever, turn } => last.then_pivot(lever, turn, length)?,
         };
-        if next.length() > 0.0 {
-            if last.length() == 0.0 {
-                self.segments.clear();
-                self.tops.clear();
-            }
-            self.segments.push(next);
-            self.tops.push(top);
+        let next = next.facing(Radians(if limit.reverse { -PI } else { 0.0 }))?;
+        if last.length() == 0.0 {
+            self.segments.clear();
+            self.limits.clear();
         }
+        self.segments.push(next);
+        self.limits.push(limit);
         Ok(())
     }
 
@@ -155,9 +179,13 @@ impl SpeedLimitedPath {
         [point.x, point.y]
     }
 
-    /// Heading at a travelled length \[rad\].
+    /// Heading of the robot at a travelled length \[rad\].
     pub(super) fn heading_at(&self, length: f64) -> f64 {
-        self.path().map_or(0.0, |path| path.pose_at(length).heading.0)
+        let along = self.path().map_or(0.0, |path| path.pose_at(length).heading.0);
+        // That of the segment that begins there, as of a path.
+        let place = self.segments.partition_point(|segment| segment.from() <= length).saturating_sub(1);
+        let reverse = self.limits.get(place).is_some_and(|limit| limit.reverse);
+        if reverse { along - PI } else { along }
     }
 
     /// How near to its end \[m\] a robot has arrived, of these two: where it drives, and where it turns in place.
@@ -172,7 +200,7 @@ impl SpeedLimitedPath {
     /// for how much it turns at such a rate at most in a time \[s\]: how far its heading may be off a uniform turn in that time \[rad\].
     pub(super) fn uneven_turn(&self, speed: f64, time: f64) -> f64 {
         let (mut left, mut right) = (0.0_f64, 0.0_f64);
-        for (segment, top) in self.segments.iter().zip(&self.tops) {
+        for (segment, SegmentLimit { top, .. }) in self.segments.iter().zip(&self.limits) {
             let (Curve::Arc { radius: lever, turn } | Curve::Pivot { lever, turn }) = segment.curve() else { continue };
             let rate = (top.min(speed) / lever * time).min(segment.length() / lever);
             let most = if turn == TurnSide::Left { &mut left } else { &mut right };
@@ -187,11 +215,12 @@ impl SpeedLimitedPath {
     /// # Errors
     /// As [`SpeedLimitedPath::new`].
     pub fn from(&self, length: f64) -> Result<Self, InvalidInput> {
-        let mut rest = Self::standing(self.path()?.pose_at(length))?;
-        for (segment, &top) in self.segments.iter().zip(&self.tops) {
+        let heading = Radians(self.heading_at(length));
+        let mut rest = Self::standing(Pose { heading, ..self.path()?.pose_at(length) })?;
+        for (segment, &limit) in self.segments.iter().zip(&self.limits) {
             let left = segment.from() + segment.length() - length;
             if left > 0.0 {
-                rest.push(segment.curve(), left.min(segment.length()), top)?;
+                rest.push(segment.curve(), left.min(segment.length()), limit)?;
             }
         }
         Ok(rest)
@@ -200,8 +229,11 @@ impl SpeedLimitedPath {
     /// Its stretches with equal speed limits up to a length \[m\], for a robot with a largest speed \[m/s\].
     fn stretches(&self, until: f64, speed: f64) -> Vec<SpeedLimitSpan> {
         let mut stretches: Vec<SpeedLimitSpan> = Vec::new();
-        for (segment, top) in self.segments.iter().zip(&self.tops) {
-            let (length, top) = (segment.length().min(until - segment.from()).max(0.0), top.min(speed));
+        for (place, (segment, limit)) in self.segments.iter().zip(&self.limits).enumerate() {
+            let (length, top) = (segment.length().min(until - segment.from()).max(0.0), limit.top.min(speed));
+            if place > 0 && self.changes_gear_after(place - 1) {
+                stretches.push(SpeedLimitSpan { length: 0.0, top: 0.0 });
+            }
             match stretches.last_mut() {
                 Some(last) if last.top == top => last.length += length,
                 _ => stretches.push(SpeedLimitSpan { length, top }),
@@ -213,9 +245,10 @@ impl SpeedLimitedPath {
     /// The course after a time \[s\] of its first turn in place.
     #[must_use]
     pub(super) fn turned(mut self, time: f64) -> Self {
-        if let Some(TurnInPlace { segment, duration, .. }) = self.in_place(0).filter(|_| time > 0.0) {
+        let turn = self.in_place(0).filter(|turn| time > 0.0 && is_turn(&self.segments[turn.segment]));
+        if let Some(TurnInPlace { segment, duration, .. }) = turn {
             // At least a frame is left.
-            self.tops[segment] *= duration / (duration - time).max(FRAME);
+            self.limits[segment].top *= duration / (duration - time).max(FRAME);
         }
         self
     }
@@ -239,22 +272,33 @@ impl SpeedLimitedPath {
 
     /// The speed in a frame from a length on \[m\] with which a robot keeps to all that follows; turns in place are left aside \[m/s\].
     pub(super) fn allowed(&self, length: f64, acceleration: f64, frame: f64) -> f64 {
-        let ahead = self.segments.iter().zip(&self.tops).filter(|(segment, top)| {
+        let tops = self.limits.iter().map(|limit| limit.top);
+        let ahead = self.segments.iter().zip(tops).filter(|(segment, top)| {
             top.is_finite() && !is_turn(segment) && segment.from() + segment.length() > length
         });
-        ahead.fold(f64::INFINITY, |allowed: f64, (segment, &top)| {
+        ahead.fold(f64::INFINITY, |allowed: f64, (segment, top)| {
             let before = segment.from() - length;
             allowed.min(if before > 0.0 { speed_before(before, top, acceleration, frame) } else { top })
         })
     }
 
-    /// The first turn in place that takes time among its segments from this place on.
+    /// The first turn in place that takes time, or change of gear, among its segments from this place on.
     pub(super) fn in_place(&self, from: usize) -> Option<TurnInPlace> {
-        let turns = self.segments.iter().zip(&self.tops).enumerate().skip(from);
-        turns.filter(|(_, (segment, _))| is_turn(segment)).find_map(|(place, (segment, top))| {
+        let segments = self.segments.iter().zip(&self.limits).enumerate().skip(from);
+        segments.into_iter().find_map(|(place, (segment, SegmentLimit { top, .. }))| {
             let duration = segment.length() / top;
-            (duration > 0.0).then_some(TurnInPlace { segment: place, at: segment.from(), duration })
+            if is_turn(segment) && duration > 0.0 {
+                return Some(TurnInPlace { segment: place, at: segment.from(), duration });
+            }
+            let at = segment.from() + segment.length();
+            self.changes_gear_after(place).then_some(TurnInPlace { segment: place, at, duration: SHIFT })
         })
+    }
+
+    /// Whether the gear changes at the end of a segment.
+    fn changes_gear_after(&self, place: usize) -> bool {
+        let [before, after] = [place, place + 1].map(|place| self.limits.get(place));
+        before.zip(after).is_some_and(|(before, after)| before.reverse != after.reverse)
     }
 
     /// The least radius of an arc that is driven \[m\]; infinite without any.
@@ -382,6 +426,22 @@ mod tests {
         let pose = Pose { position: Point::new(1.0, 2.0), heading: Radians(0.3) };
         let arc = PathSegment::Arc { radius: 0.5, sweep: -1.0 };
         let course = SpeedLimitedPath::new(pose, &[PathSegment::Line { length: 1.0 }, arc, arc]).expect("a course");
+        let gears =
+            [PathSegment::Cusp, arc, PathSegment::Line { length: 0.5 }, PathSegment::Cusp, PathSegment::Cusp, arc];
+        let shunting = SpeedLimitedPath::new(pose, &[&gears[..], &gears].concat()).expect("a course");
+        for from in [0.0, 0.4, 0.5, 1.2, 1.9, 2.0, 2.7, 3.0] {
+            let rest = shunting.from(from).expect("its rest");
+            assert_eq!(
+                rest.stretches(3.0, 1.0).len(),
+                shunting.stretches(3.0, 1.0).len() - usize::from(from >= 1.5) * 2
+            );
+            for further in [0.0, 0.05, 0.3] {
+                let ([x, y], [u, v]) = (rest.point_at(further), shunting.point_at(from + further));
+                assert!((x - u).hypot(y - v) < 1e-12, "{from} {further}");
+                let off = rest.heading_at(further) - shunting.heading_at(from + further);
+                assert!(off.abs() < 1e-12, "{from} {further}: {off}");
+            }
+        }
         for from in [0.0, 0.4, 1.0, 1.2, 1.5, 1.9, 2.0] {
             let rest = course.from(from).expect("its rest");
             assert!((rest.length() - (course.length() - from)).abs() < 1e-12);
