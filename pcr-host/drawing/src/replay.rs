@@ -1,6 +1,6 @@
 //! A page that replays runs: one HTML file that contains everything and sends no requests.
 //!
-//! Discs move as they did in the run. Beside them is the collision map of a robot as of its last plan: regions, planned
+//! Bodies move as they did in the run; of controllers that know discs only, each is the disc about it. Beside them is the collision map of a robot as of its last plan: regions, planned
 //! motion, and the length that the robot has really travelled.
 
 use crate::contour::trace;
@@ -11,7 +11,7 @@ use pcr_execution::simulate::{
     ControllerKind, FRAME, MissionRecord, PlanSnapshot, PlaneVector, SimulationRun, SimulationTask,
 };
 use pcr_planning::failure::ComputationError;
-use pcr_planning::fleet::build_ecm;
+use pcr_planning::fleet::{ConvexBody, build_ecm};
 use serde_json::{Value, json};
 
 const PAGE: PageTemplate = PageTemplate {
@@ -24,6 +24,9 @@ const PAGE: PageTemplate = PageTemplate {
 
 /// Positions are given in this unit \[m\].
 const UNIT: f64 = 1e-4;
+
+/// Headings are given in this unit \[rad\].
+const ANGLE_UNIT: f64 = 1e-3;
 
 /// Points of a path, and of a planned motion.
 const POINTS: usize = 80;
@@ -44,6 +47,13 @@ fn rounded(length: f64) -> i64 {
     (length / UNIT).round() as i64
 }
 
+/// The corners of a body that is no disc, counter-clockwise, ahead and left of its reference point, and the radius by which they are
+/// rounded \[m\].
+fn body(body: &ConvexBody) -> Option<Value> {
+    let (corners, radius) = body.corners();
+    (!body.is_disc()).then(|| json!({ "corners": corners, "radius": radius }))
+}
+
 /// x, y, x, y, ... in units.
 fn flat(points: impl IntoIterator<Item = PlaneVector>) -> Vec<i64> {
     points.into_iter().flatten().map(rounded).collect()
@@ -62,15 +72,24 @@ fn data(task: &SimulationTask, outcomes: &[SimulationRun]) -> Result<Value, Comp
             let course = &mission.course;
             flat((0..=POINTS).map(|k| course.point_at(course.length() * k as f64 / POINTS as f64)))
         });
-        json!({ "id": id, "name": name, "radius": robot.radius, "colour": colour(place).to_string(), "ways": ways.collect::<Vec<_>>() })
+        json!({
+            "id": id,
+            "name": name,
+            "radius": robot.radius,
+            "body": body(&robot.body),
+            "colour": colour(place).to_string(),
+            "ways": ways.collect::<Vec<_>>(),
+        })
     });
-    let obstacles =
-        task.obstacles.iter().map(|obstacle| json!([obstacle.centre[0], obstacle.centre[1], obstacle.radius]));
+    let obstacles = task.obstacles.iter().map(|obstacle| {
+        json!({ "at": obstacle.centre, "radius": obstacle.radius, "body": body(&obstacle.body), "heading": obstacle.heading })
+    });
     let runs = outcomes.iter().map(|outcome| run(task, outcome)).collect::<Result<Vec<_>, _>>()?;
     Ok(json!({
         "name": task.name,
         "frame": FRAME,
         "unit": UNIT,
+        "angleUnit": ANGLE_UNIT,
         "robots": robots.collect::<Vec<_>>(),
         "obstacles": obstacles.collect::<Vec<_>>(),
         "runs": runs,
@@ -82,6 +101,11 @@ fn run(task: &SimulationTask, outcome: &SimulationRun) -> Result<Value, Computat
     let tracks = outcome.trace.positions.iter().map(|track| flat(track.iter().copied()));
     let travelled = outcome.trace.travelled.iter().map(|track| track.iter().map(|l| rounded(*l)).collect::<Vec<_>>());
     let bound = outcome.run.controller == ControllerKind::Pcr;
+    // Headings of those for which they matter.
+    let headings = outcome.trace.headings.iter().zip(&task.robots).map(|(track, robot)| {
+        let track = track.iter().filter(|_| bound && !robot.body.is_disc());
+        track.map(|heading| (heading / ANGLE_UNIT).round() as i64).collect::<Vec<_>>()
+    });
     let collisions = outcome
         .run
         .collisions
@@ -91,6 +115,7 @@ fn run(task: &SimulationTask, outcome: &SimulationRun) -> Result<Value, Computat
         "controller": outcome.run.controller.name(),
         "travel": outcome.run.travel,
         "tracks": tracks.collect::<Vec<_>>(),
+        "headings": headings.collect::<Vec<_>>(),
         "travelled": if bound { travelled.collect::<Vec<_>>() } else { Vec::new() },
         "journeys": journeys(task, &outcome.trace.journeys),
         "collisions": collisions.collect::<Vec<_>>(),
@@ -153,7 +178,30 @@ mod tests {
     use super::*;
     use pcr_execution::simulate::{ClosedLoopOptions, Disturbance, run};
     use pcr_formats::scenario::Scenario;
-    use pcr_planning::fleet::ConvexBody;
+
+    #[test]
+    fn outlines_are_drawn_where_the_controller_knows_them() {
+        let square = r#""footprint":{"polygon":[{"ahead":0.2,"left":0.2},{"ahead":-0.2,"left":0.2},{"ahead":-0.2,"left":-0.2},{"ahead":0.2,"left":-0.2}]}"#;
+        let agents = format!(
+            r#"{{"version":2,"agents":[
+            {{"id":3,{square},"v_max":1,"a_max":1,"start":{{"x":-2,"y":0,"heading":1}},
+              "path":[{{"kind":"line","length":1}},{{"kind":"arc","radius":1,"sweep":0.5,"gear":"reverse"}}]}},
+            {{"id":5,{square},"v_max":1,"a_max":1,"start":{{"x":9,"y":0,"heading":0.25}},"path":[]}},
+            {{"id":8,"radius":0.3,"v_max":1,"a_max":1,"start":{{"x":0,"y":-2,"heading":1.57}},"path":[{{"kind":"line","length":4}}]}}]}}"#
+        );
+        let task = SimulationTask::from_scenario(&Scenario::from_json(&agents).expect("a scenario")).expect("a task");
+        let disturbance = Disturbance { noise: 0.0, slip: 0.0, delay: 0.0, drift: 0.0 };
+        let settings = ClosedLoopOptions { seed: 1, replan: 2.0, disturbance };
+        let runs = [ControllerKind::Pcr, ControllerKind::Orca].map(|kind| run(&task, kind, settings).expect("a run"));
+        let data = data(&task, &runs).expect("data");
+        assert_eq!(data["robots"][0]["body"]["corners"].as_array().map(Vec::len), Some(4));
+        assert_eq!((&data["robots"][1]["body"], &data["obstacles"][0]["heading"]), (&Value::Null, &json!(0.25)));
+        let headings =
+            |run: usize, robot: usize| data["runs"][run]["headings"][robot].as_array().expect("a track").clone();
+        let own = headings(0, 0);
+        assert_eq!((own.first(), own.last()), (Some(&json!(1000)), Some(&json!(1500))));
+        assert_eq!([headings(0, 1).len(), headings(1, 0).len()], [0, 0]);
+    }
 
     #[test]
     fn a_plan_without_a_map_is_no_empty_map() {

@@ -1,7 +1,7 @@
 "use strict";
 const data = JSON.parse(document.getElementById("data").textContent);
 const $ = (id) => document.getElementById(id);
-const { robots, obstacles, frame, unit } = data;
+const { robots, obstacles, frame, unit, angleUnit } = data;
 let run, frames, now = 0, playing = false, before = 0;
 
 // The colours of the page, light or dark.
@@ -27,7 +27,7 @@ const bounds = (() => {
     box[0] = Math.min(box[0], x - r); box[1] = Math.max(box[1], x + r);
     box[2] = Math.min(box[2], y - r); box[3] = Math.max(box[3], y + r);
   };
-  obstacles.forEach(([x, y, r]) => grow(x, y, r));
+  obstacles.forEach(({ at: [x, y], radius }) => grow(x, y, radius));
   robots.forEach(({ ways, radius }) => ways.forEach((way) => { for (let i = 0; i < way.length; i += 2) grow(way[i] * unit, way[i + 1] * unit, radius); }));
   data.runs.forEach((run) => run.tracks.forEach((track, k) => {
     for (let i = 0; i < track.length; i += 2) grow(track[i] * unit, track[i + 1] * unit, robots[k].radius);
@@ -76,6 +76,32 @@ function position(robot, at) {
   return [0, 1].map((axis) => unit * (track[2 * k + axis] * (1 - part) + track[2 * next + axis] * part));
 }
 
+/** The heading of a robot that is no disc in this run, between two frames [rad]; undefined of others. */
+function heading(robot, at) {
+  const track = run.headings[robot], last = track.length - 1;
+  if (last < 0) return undefined;
+  const k = Math.min(Math.floor(at), last), next = Math.min(k + 1, last);
+  return angleUnit * (track[k] + (track[next] - track[k]) * Math.min(at - k, 1));
+}
+
+/** Begins the path of a disc around a place in pixels or, if it has a heading, of a body with rounded corners. */
+function shape(c, [x, y, r], body, heading, scale) {
+  c.beginPath();
+  if (!body || heading === undefined) {
+    c.arc(x, y, r, 0, 7);
+    return;
+  }
+  const [cos, sin] = [Math.cos(heading), Math.sin(heading)], corners = body.corners, count = corners.length;
+  const normal = ([a, b], [u, v]) => Math.atan2(a - u, v - b) + heading;
+  corners.forEach(([ahead, left], k) => {
+    const before = normal(corners[(k + count - 1) % count], corners[k]), after = normal(corners[k], corners[(k + 1) % count]);
+    const at = [x + (ahead * cos - left * sin) * scale, y - (ahead * sin + left * cos) * scale];
+    // On the screen y points down.
+    c.arc(...at, body.radius * scale, -before, -after, true);
+  });
+  c.closePath();
+}
+
 function colliding(id, time) {
   return run.collisions.some(([i, j, t]) => (i === id || j === id) && t[0] <= time && time <= t[1]);
 }
@@ -85,10 +111,9 @@ function drawWorld() {
   const scale = Math.min(width / (bounds[1] - bounds[0]), height / (bounds[3] - bounds[2]));
   const x = (value) => width / 2 + (value - centre[0]) * scale;
   const y = (value) => height / 2 - (value - centre[1]) * scale;
-  const disc = (px, py, r) => { c.beginPath(); c.arc(x(px), y(py), r * scale, 0, 7); };
   const ego = Number($("ego").value);
   c.fillStyle = theme.stone;
-  obstacles.forEach(([px, py, r]) => { disc(px, py, r); c.fill(); });
+  obstacles.forEach(({ at: [px, py], radius, body, heading }) => { shape(c, [x(px), y(py), radius * scale], body, heading, scale); c.fill(); });
   c.save();
   c.translate(width / 2, height / 2);
   c.scale(scale, -scale);
@@ -105,8 +130,9 @@ function drawWorld() {
     for (let i = 0; i < way.length; i += 2) c.lineTo(x(way[i] * unit), y(way[i + 1] * unit));
     c.stroke();
     // Dashes of a small circle would be dots.
-    c.setLineDash(robots[journey.robot].radius * scale < 6 ? [2, 2] : [4, 3]);
-    disc(way.at(-2) * unit, way.at(-1) * unit, robots[journey.robot].radius);
+    const { radius, body } = robots[journey.robot], end = [x(way.at(-2) * unit), y(way.at(-1) * unit), radius * scale];
+    c.setLineDash(radius * scale < 6 ? [2, 2] : [4, 3]);
+    shape(c, end, body, heading(journey.robot, Math.min(journey.end ?? Infinity, frames)), scale);
     c.stroke();
     c.setLineDash([]);
   }
@@ -118,8 +144,7 @@ function drawWorld() {
   for (const k of order) {
     const [px, py, r] = discs[k];
     crowd.take([px - r, py - r, px + r, py + r], k);
-    c.beginPath();
-    c.arc(px, py, r, 0, 7);
+    shape(c, discs[k], r > 3 && robots[k].body, heading(k, now), scale);
     c.fillStyle = c.strokeStyle = hits[k] ? theme.hit : theme.robots[k];
     // Small ones would be pale on their lines.
     c.globalAlpha = hits[k] || r < 8 ? 0.8 : 0.5;
