@@ -1,8 +1,10 @@
-//! Vehicles with outlines that are driven backward: layouts were read as if they turned round. One whose outline is the same backward
-//! may do so.
+//! Vehicles with outlines that are driven backward, and change their gear on the way.
 
 use pcr_formats::import::{Facing, ImportOptions, InputFormat, Warnings, layout, scenario};
+use pcr_formats::scenario::{Agent, Scenario};
+use pcr_planning::fleet::Fleet;
 use serde_json::json;
+use std::f64::consts::{PI, TAU};
 use std::path::{Path, PathBuf};
 
 /// A vehicle whose outline is a rectangle around its reference point.
@@ -50,17 +52,111 @@ fn paths_of_opentcs_are_driven_backward_in_their_other_direction() {
             <path name=\"p\" sourcePoint=\"a\" destinationPoint=\"b\" length=\"5000\" maxVelocity=\"1000\" {limit}/></model>"
         )
     };
-    for limit in ["", "maxReverseVelocity=\"0\""] {
+    for limit in ["", "maxReverseVelocity=\"0\"", "maxReverseVelocity=\"500\""] {
         assert_eq!(read(InputFormat::OpenTcs, &plant(limit), &centred), Ok(()));
     }
-    let error = read(InputFormat::OpenTcs, &plant("maxReverseVelocity=\"500\""), &centred).unwrap_err();
-    assert!(error.starts_with("path p, maxReverseVelocity: it is driven backward, and outlines"), "{error}");
-    // What is left out is the other direction.
-    let fleet = Some(concat!(env!("CARGO_MANIFEST_DIR"), "/data/small/factsheet.json").into());
-    let partial = ImportOptions { fleet, partial: true, ..ImportOptions::default() };
     let text = plant("maxReverseVelocity=\"500\"");
-    let read = layout(InputFormat::OpenTcs, &text, &partial, &mut Warnings::default()).unwrap().layout;
-    assert_eq!(read.edges.iter().map(|edge| edge.is_two_way()).collect::<Vec<_>>(), [false]);
+    for (fleet, facing) in [(Some(FORK.into()), [Facing::Ahead, Facing::Backward]), (None, [Facing::Ahead; 2])] {
+        let radius = fleet.is_none().then_some(0.5);
+        let options = ImportOptions { fleet, radius, ..ImportOptions::default() };
+        let read = layout(InputFormat::OpenTcs, &text, &options, &mut Warnings::default()).unwrap().layout;
+        assert_eq!((read.edges[0].is_two_way(), read.edges[0].facing), (true, facing));
+    }
+}
+
+/// A vehicle whose reference point is not in its middle.
+const FORK: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/data/small/factsheet.json");
+
+fn agent(format: InputFormat, text: &str, routes: &[&str]) -> Agent {
+    let one = Some(1.0);
+    let options = ImportOptions {
+        fleet: Some(FORK.into()),
+        rotation: one,
+        rotation_acceleration: one,
+        routes: routes.iter().map(ToString::to_string).collect(),
+        ..ImportOptions::default()
+    };
+    let mut read = scenario(format, text, &options, &mut Warnings::default()).unwrap();
+    // What is written is read again.
+    assert_eq!(Scenario::from_json(&read.to_json()), Ok(read.clone()));
+    read.agents.remove(0)
+}
+
+/// Headings of the body at the middles of the segments of its motion, from the corner that is farthest ahead \[rad\].
+fn headings(agent: &Agent) -> Vec<f64> {
+    let scenario = Scenario::new("", vec![agent.clone()]);
+    let fleet = Fleet::<f64>::new(&scenario).unwrap();
+    let motion = &fleet.motions()[0];
+    let mut gears = Vec::new();
+    let mut reverse = false;
+    for segment in &agent.path {
+        reverse ^= segment.letter() == 'C';
+        if segment.letter() != 'C' {
+            gears.push(reverse);
+        }
+    }
+    assert_eq!(gears.len(), motion.path().segments().len());
+    let along = motion.path().segments().iter().map(|segment| segment.heading_at(0.5 * segment.length()).0);
+    along.zip(gears).map(|(along, reverse)| (along + if reverse { PI } else { 0.0 }).rem_euclid(TAU)).collect()
+}
+
+/// They were replaced by the disc around the outline.
+#[test]
+fn vehicles_change_their_gear_on_the_way() {
+    // Ahead to a dead end, and backward out of it round a corner: it turns there by a quarter, and nowhere else.
+    let node = |k: usize, x: f64, y: f64| {
+        json!({ "nodeId": k.to_string(), "sequenceId": 2 * k, "released": true, "actions": [],
+            "nodePosition": { "x": x, "y": y, "mapId": "m" } })
+    };
+    let edge = |k: usize, orientation: f64| json!({ "edgeId": format!("e{k}"), "sequenceId": 2 * k - 1, "released": true, "actions": [], "orientation": orientation });
+    let nodes = [node(0, 0.0, 0.0), node(1, 5.0, 0.0), node(2, 2.0, 0.0), node(3, 2.0, 4.0)];
+    let order = json!({ "orderId": "o", "nodes": nodes, "edges": [edge(1, 0.0), edge(2, PI), edge(3, PI)] });
+    let ordered = agent(InputFormat::Vda5050, &order.to_string(), &[]);
+    let plant = "<model version=\"7.0.0\" name=\"m\"><point name=\"a\" positionX=\"0\" positionY=\"0\"/>\
+        <point name=\"b\" positionX=\"5000\" positionY=\"0\"/><point name=\"c\" positionX=\"2000\" positionY=\"0\"/>\
+        <point name=\"d\" positionX=\"2000\" positionY=\"4000\"/>\
+        <path name=\"p\" sourcePoint=\"a\" destinationPoint=\"b\" length=\"5000\" maxVelocity=\"1000\"/>\
+        <path name=\"q\" sourcePoint=\"c\" destinationPoint=\"b\" length=\"3000\" maxVelocity=\"0\" maxReverseVelocity=\"500\"/>\
+        <path name=\"r\" sourcePoint=\"d\" destinationPoint=\"c\" length=\"4000\" maxVelocity=\"0\" maxReverseVelocity=\"500\"/></model>";
+    let routed = agent(InputFormat::OpenTcs, plant, &["a:d"]);
+    for agent in [&ordered, &routed] {
+        assert!(agent.footprint.is_some());
+        assert_eq!(agent.structure(), "SCSAS", "{agent:?}");
+        let expected = [0.0, 0.0, 1.75 * PI, 1.5 * PI];
+        for (heading, expected) in headings(agent).into_iter().zip(expected) {
+            let off = (heading - expected + PI).rem_euclid(TAU) - PI;
+            assert!(off.abs() < 1e-6, "{heading} {expected}");
+        }
+    }
+    // 5 m at 1 m/s and 0.6 m/s²; 3 m and 4 m at half the speed; a quarter of a turn at 1 rad/s and 1 rad/s².
+    let seconds = |length: f64, top: f64, rate: f64| length / top + top / rate;
+    let turn = std::f64::consts::FRAC_PI_2 + 1.0;
+    let expected = seconds(5.0, 1.0, 0.4) + seconds(3.0, 0.5, 0.4) + seconds(4.0, 0.5, 0.4) + turn;
+    assert!((routed.duration() - expected).abs() < 1e-6, "{} {expected}", routed.duration());
+    // Backward on all edges it has one gear, and its outline is turned.
+    let order = json!({ "orderId": "o", "nodes": nodes[1..], "edges": [edge(2, PI), edge(3, PI)] });
+    let backward = agent(InputFormat::Vda5050, &order.to_string(), &[]);
+    assert_eq!((backward.structure().as_str(), backward.footprint.is_some()), ("SAS", true));
+    // Where an edge says nothing clear, it is the disc, or what may face either way.
+    let order = json!({ "orderId": "o", "nodes": nodes, "edges": [edge(1, 0.0), edge(2, 1.0), edge(3, PI)] });
+    assert!(agent(InputFormat::Vda5050, &order.to_string(), &[]).footprint.is_none());
+    // A theta that is that of neither edge is refused, and what it is after the change of gear is taken.
+    let mut nodes = nodes;
+    nodes[2]["nodePosition"]["theta"] = json!(0.0);
+    nodes[3]["nodePosition"]["theta"] = json!(-0.5 * PI);
+    let order = |nodes: &[serde_json::Value]| {
+        json!({ "orderId": "o", "nodes": nodes, "edges": [edge(1, 0.0), edge(2, PI), edge(3, PI)] }).to_string()
+    };
+    assert_eq!(agent(InputFormat::Vda5050, &order(&nodes), &[]), ordered);
+    nodes[3]["nodePosition"]["theta"] = json!(0.5 * PI);
+    let options = ImportOptions {
+        fleet: Some(FORK.into()),
+        rotation: Some(1.0),
+        rotation_acceleration: Some(1.0),
+        ..ImportOptions::default()
+    };
+    let error = scenario(InputFormat::Vda5050, &order(&nodes), &options, &mut Warnings::default()).unwrap_err();
+    assert!(error.problem().contains("its theta"), "{error}");
 }
 
 #[test]

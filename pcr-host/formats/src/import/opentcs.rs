@@ -12,7 +12,7 @@ use super::nurbs::RationalBezier;
 use super::unique_names::UniqueNames;
 use super::warnings::{DIFFERENCE, LENGTH};
 use super::xml::{children, lose_astray, number, only, optional, parse, warn_of_unknown};
-use super::{ImportError, ImportOptions, WarningCode, Warnings, vehicle_heading};
+use super::{Facing, ImportError, ImportOptions, WarningCode, Warnings, vehicle_heading};
 use crate::footprint::Footprint;
 use crate::plane_geometry::distance;
 use crate::scenario::PlacedSegment;
@@ -121,10 +121,8 @@ pub(super) fn read(
         ) {
             Ok(mut edge) => {
                 // In the other direction a vehicle drives backward: it does not turn round.
-                if edge.ways[1] && vehicle_heading::is_other_backward(outline) {
-                    edge.ways[1] = false;
-                    edge.closed |= !edge.ways[0];
-                    warnings.lose(format_args!("path {}, maxReverseVelocity: {}", edge.id, vehicle_heading::BACKWARD));
+                if outline.is_some() {
+                    edge.facing[1] = Facing::Backward;
                 }
                 edges.add(edge, warnings);
             }

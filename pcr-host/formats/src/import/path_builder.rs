@@ -1,10 +1,11 @@
 //! Converts lines and arcs anywhere in the plane to one path: a G1 chain of lines and arcs.
 //!
 //! Where two pieces meet at an angle, the vehicle turns in place: an arc of [`TURN`] radius, on which it comes to rest
-//! if the angle is more than [`KINK`]. A line is aimed at its end from the point that the path has really reached, so
+//! if the angle is more than [`KINK`]. Where the vehicle goes on in the other gear, it comes to rest as well, and turns by what its own
+//! heading differs. A line is aimed at its end from the point that the path has really reached, so
 //! that displacements by turns and gaps do not add up. The largest distance from the requested geometry is recorded.
 
-use crate::plane_geometry::{distance, within_half_turn};
+use crate::plane_geometry::{distance, within_half_turn, wrapped};
 use crate::scenario::{KINK, PathSegment, PlacedSegment, TURN};
 use std::f64::consts::PI;
 
@@ -26,7 +27,7 @@ pub(super) struct LimitedSegment {
     pub(super) speed: Option<f64>,
     /// Largest speed of rotation \[rad/s\], where it is limited.
     pub(super) rotation: Option<f64>,
-    /// A turn in place, before and after which the vehicle is at rest.
+    /// A turn in place or a change of gear, before and after which the vehicle is at rest.
     pub(super) in_place: bool,
 }
 
@@ -38,7 +39,10 @@ pub(super) struct LimitedPathBuilder {
     /// Of all stretches \[m\].
     length: f64,
     at: [f64; 2],
+    /// Direction of travel \[rad\].
     heading: f64,
+    /// Whether it drives backward, and whether it does so in what is added from now on.
+    reverse: [bool; 2],
     deviation: f64,
     turned: f64,
     speed: Option<f64>,
@@ -64,6 +68,11 @@ impl LimitedPathBuilder {
         (self.speed, self.rotation) = (speed, rotation);
     }
 
+    /// The vehicle drives backward on what is added from now on, or ahead.
+    pub(super) fn set_reverse(&mut self, reverse: bool) {
+        self.reverse[1] = reverse;
+    }
+
     /// Adds a line to a point from where the path is, which ought to be `from`.
     pub(super) fn line(&mut self, from: [f64; 2], to: [f64; 2]) {
         let begins = self.start.is_none();
@@ -87,7 +96,7 @@ impl LimitedPathBuilder {
     pub(super) fn follow(&mut self, piece: &PlacedSegment) {
         match piece.shape {
             PathSegment::Line { .. } => self.line(piece.start, piece.end()),
-            // No file of another format has one.
+            // No curve of a file has one.
             PathSegment::Cusp => {}
             PathSegment::Arc { radius, sweep } => {
                 if radius * sweep == 0.0 {
@@ -105,8 +114,13 @@ impl LimitedPathBuilder {
     /// Turns in place to a heading; the path begins here if it has not begun.
     fn face(&mut self, at: [f64; 2], heading: f64) {
         if self.start.is_none() {
-            (self.at, self.heading) = (at, heading);
-            self.start = Some([at[0], at[1], heading]);
+            let own = if self.reverse[1] { wrapped(heading + PI) } else { heading };
+            (self.at, self.heading) = (at, own);
+            self.start = Some([at[0], at[1], own]);
+        }
+        if self.reverse[0] != self.reverse[1] {
+            self.reverse[0] = self.reverse[1];
+            self.push(PathSegment::Cusp, true);
         }
         let sweep = within_half_turn(heading - self.heading);
         if sweep.abs() > STRAIGHT {

@@ -179,8 +179,9 @@ fn corner_arcs(
     steps.iter().enumerate().map(arc).collect()
 }
 
-/// The path along some edges, from the node where it begins.
-pub(super) fn trace(layout: &Layout, from: usize, steps: &[RouteStep<'_>]) -> Result<LimitedPath, ImportError> {
+/// The path along some edges, from the node where it begins, on which the vehicle drives backward where it faces so, or which it travels in
+/// one gear.
+fn trace(layout: &Layout, from: usize, steps: &[RouteStep<'_>], in_gears: bool) -> Result<LimitedPath, ImportError> {
     let at = |node: usize| layout.position(node);
     let arcs = corner_arcs(layout, from, steps, layout.corner_radius);
     let mut tracer = LimitedPathBuilder::default();
@@ -190,6 +191,7 @@ pub(super) fn trace(layout: &Layout, from: usize, steps: &[RouteStep<'_>]) -> Re
     for (k, (step, arc)) in steps.iter().zip(arcs).enumerate() {
         let (edge, target) = (step.edge, at(step.target()));
         tracer.limit(step.speed(), edge.rotation);
+        tracer.set_reverse(in_gears && step.facing() == Facing::Backward);
         deviation = deviation.max(step.deviation() + longer);
         turned = turned.max(step.turned() + turn_over(&edge.curve, longer));
         longer += edge.longer;
@@ -345,7 +347,7 @@ pub(super) fn scenario(
         let asked = RouteRequest::parse(route, |name| layout.nodes_called(name))?;
         let refused = |problem: &dyn fmt::Display| ImportError::new(format!("route {route}: {problem}"));
         let steps = shortest(layout, asked.ends).ok_or_else(|| refused(&"there is no way from node to node"))?;
-        let trace = trace(layout, asked.ends[0], &steps).map_err(|error| refused(&error))?;
+        let (trace, vehicle) = travel(layout, vehicle, asked.ends[0], &steps).map_err(|error| refused(&error))?;
         rounded |= corner_arcs(layout, asked.ends[0], &steps, layout.corner_radius).iter().any(Option::is_some);
         levels.push(layout.level_of(asked.ends[0]));
         let name = |place: usize| {
@@ -355,7 +357,6 @@ pub(super) fn scenario(
         let way = format!("{} > {}", name(asked.ends[0]), name(asked.ends[1]));
         // If the file names its vehicles, the routes belong to them, in the order of both.
         let label = label(&layout.vehicles.get(k).map_or(way.clone(), |vehicle| format!("{vehicle} {way}")));
-        let vehicle = vehicle.facing(along(&steps));
         agents.push(Agent { label, ..agent(k as u64 + 1, &trace, &vehicle, asked.time) });
     }
     let names = options.routes.iter().map(|route| format!("route {route}")).collect::<Vec<_>>();
@@ -381,13 +382,23 @@ pub(super) fn mission(
     ends: [usize; 2],
 ) -> Result<Option<Agent>, ImportError> {
     let Some(steps) = shortest(layout, ends) else { return Ok(None) };
-    let trace = trace(layout, ends[0], &steps)?;
-    Ok(Some(agent(id, &trace, &vehicle.facing(along(&steps)), 0.0)))
+    let (trace, vehicle) = travel(layout, vehicle, ends[0], &steps)?;
+    Ok(Some(agent(id, &trace, &vehicle, 0.0)))
 }
 
-/// Which way a vehicle faces on a route.
-fn along(steps: &[RouteStep<'_>]) -> Facing {
-    steps.iter().map(|step| step.facing()).reduce(Facing::then).unwrap_or_default()
+/// The path of a vehicle along some edges, from the node where it begins, and the vehicle as it is on it: it changes its gear where it is
+/// known which way its outline faces on every edge.
+fn travel(
+    layout: &Layout,
+    vehicle: &VehicleTraits,
+    from: usize,
+    steps: &[RouteStep<'_>],
+) -> Result<(LimitedPath, VehicleTraits), ImportError> {
+    let facings = || steps.iter().map(|step| step.facing());
+    let in_gears = vehicle.footprint.is_some() && Facing::changes(facings());
+    let path = trace(layout, from, steps, in_gears)?;
+    let facing = facings().reduce(Facing::then).unwrap_or_default();
+    Ok((path, if in_gears { vehicle.clone() } else { vehicle.facing(facing) }))
 }
 
 /// The vehicle on a single edge, in one direction, with the limits of the edge. It has the outline that it has there, which
@@ -506,7 +517,7 @@ mod tests {
     fn a_way_goes_on_where_the_edge_before_ends() {
         let layout = bend(0);
         let steps = shortest(&layout, [0, 4]).expect("a way");
-        let trace = trace(&layout, 0, &steps).expect("a path");
+        let trace = trace(&layout, 0, &steps, false).expect("a path");
         assert!(trace.deviation < 1e-5, "{}", trace.deviation);
         let length: f64 = trace.stretches.iter().map(|stretch| stretch.shape.length()).sum();
         assert!((length - (FRAC_PI_2 + 2.0 + 3.0 + 1.0)).abs() < 1e-5, "{length}");

@@ -3,7 +3,7 @@
 //! Between the speeds at two joints, a segment is travelled with full acceleration, at its speed limit, and with full
 //! deceleration. The speeds at the joints follow from a forward pass (which speeds can be reached) and a backward pass
 //! (from which speeds the vehicle can brake). A turn in place of angle θ(t) is the motion ε θ(t) on its arc of radius
-//! ε.
+//! ε. At a change of gear it is at rest.
 
 use super::VehicleTraits;
 use super::path_builder::LimitedSegment;
@@ -41,7 +41,8 @@ pub(super) fn motion(stretches: &[LimitedSegment], vehicle: &VehicleTraits) -> M
         return MotionSpec::RestToRest { v_max: vehicle.speed, a_max: vehicle.acceleration };
     }
     let mut pieces = Vec::new();
-    for (limit, [before, after]) in limits.iter().zip(speeds(&limits)) {
+    // A change of gear has no length and takes no time.
+    for (limit, [before, after]) in limits.iter().zip(speeds(&limits)).filter(|(limit, _)| limit.length > 0.0) {
         let a = limit.acceleration;
         let peak = ((before * before + after * after) / 2.0 + a * limit.length).sqrt();
         let peak = peak.min(limit.speed).max(before).max(after);

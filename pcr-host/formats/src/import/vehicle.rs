@@ -2,6 +2,7 @@
 
 use super::{ImportError, InputFormat, WarningCode, Warnings};
 use crate::footprint::Footprint;
+use std::f64::consts::PI;
 use std::path::PathBuf;
 
 /// Where the size of a vehicle comes from.
@@ -66,7 +67,22 @@ impl Facing {
         }
     }
 
-    /// What holds on a path of two parts: a vehicle that faces another way on the second one has turned round between them.
+    /// Angle from the direction of travel to its heading \[rad\], where it is known.
+    pub fn angle(self) -> Option<f64> {
+        match self {
+            Self::Ahead => Some(0.0),
+            Self::Backward => Some(PI),
+            Self::Either | Self::Any => None,
+        }
+    }
+
+    /// Whether a vehicle that faces so on the parts of a path drives ahead on some of them and backward on others, and it is known of each.
+    pub(super) fn changes(parts: impl Iterator<Item = Self>) -> bool {
+        let all = parts.map(Self::angle).collect::<Option<Vec<_>>>();
+        all.is_some_and(|all| all.windows(2).any(|pair| pair[0] != pair[1]))
+    }
+
+    /// What holds on a path of two parts in one gear: a vehicle that faces another way on the second one has turned round between them.
     #[must_use]
     pub fn then(self, other: Self) -> Self {
         match (self, other) {
@@ -78,8 +94,8 @@ impl Facing {
 }
 
 impl VehicleTraits {
-    /// The vehicle as if it faced along its path, covering what it covers where it faces so: until a path can be driven backward, an
-    /// outline that may face either way is the convex hull of both, and one that may face any way is the disc around it.
+    /// The vehicle as if it faced along its path, covering what it covers where it faces so: an outline that may face either way is the
+    /// convex hull of both, and one that may face any way is the disc around it.
     #[must_use]
     pub fn facing(&self, facing: Facing) -> Self {
         let Some(footprint) = &self.footprint else { return self.clone() };

@@ -1,5 +1,4 @@
-//! Which way a vehicle faces as it travels. Paths have no gears, so that an outline that faces another way than along its path is replaced
-//! by one that covers it.
+//! Which way a vehicle faces as it travels: along its path, against it, or as nobody knows.
 
 use super::biarc::BiarcFit;
 use super::json_access::JsonObject;
@@ -25,11 +24,8 @@ pub(super) fn is_ahead(outline: &Footprint, angle: f64) -> bool {
     askew(outline, angle) <= ROUNDING
 }
 
-/// The message about a backward drive that was not read.
-pub(super) const BACKWARD: &str = "it is driven backward, and outlines face along their paths here";
-
 /// Whether it matters that the vehicle drives backward: neither to a disc nor to an outline that is the same then.
-pub(super) fn is_other_backward(outline: Option<&Footprint>) -> bool {
+fn is_other_backward(outline: Option<&Footprint>) -> bool {
     outline.is_some_and(|outline| !outline.is_same_backward())
 }
 

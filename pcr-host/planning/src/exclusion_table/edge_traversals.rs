@@ -288,11 +288,10 @@ impl<'a> EdgeTraversals<'a> {
         let mut range = [0.0_f64; 2];
         for other in &sides[side] {
             let [arrives, leaves] = if side == 0 { [other, &own] } else { [&own, other] };
-            // What faces another way on the next edge turns round in between, to either side.
-            if arrives.step.facing().then(leaves.step.facing()) == Facing::Any {
-                return [-PI, PI];
-            }
-            let turn = arrives.turn(leaves);
+            let [before, after] = [arrives, leaves].map(|way| way.step.facing());
+            // What faces another way on the next edge may turn round in between, to either side.
+            let Some((before, after)) = before.angle().zip(after.angle()) else { return [-PI, PI] };
+            let turn = wrapped(arrives.turn(leaves) + after - before);
             let leads_on = |way: &EdgeApproach<'_>| !way.step.edge.closed && !arrives.turns_back(way);
             if arrives.turns_back(leaves) && sides[1].iter().any(leads_on) {
                 continue;

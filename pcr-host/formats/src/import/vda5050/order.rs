@@ -17,7 +17,8 @@ use std::f64::consts::PI;
 /// How an order is travelled up to some node.
 #[derive(Default)]
 struct OrderPathBuilder {
-    tracer: LimitedPathBuilder,
+    /// In one gear, and in the gears of the edges.
+    tracers: [LimitedPathBuilder; 2],
     /// Headings of each edge at both ends; none where it has no length.
     headings: Vec<Option<[f64; 2]>>,
     position: Option<[f64; 2]>,
@@ -28,8 +29,8 @@ struct OrderPathBuilder {
     longer: f64,
     /// How far it may leave its edges \[m\].
     room: f64,
-    /// Which way it faces on its edges.
-    facing: Option<Facing>,
+    /// Which way it faces on each of its edges.
+    facings: Vec<Facing>,
 }
 
 impl Vda5050Reader<'_> {
@@ -53,18 +54,22 @@ impl Vda5050Reader<'_> {
         let outline = self.vehicle.footprint.as_ref();
         // What stands faces as its nodes say.
         let moves = |_: &Facing| !stands || way.room > 0.0;
-        let facing = way.facing.filter(moves).unwrap_or_default();
-        if let Some(outline) = outline.filter(|_| !stands && facing != Facing::Any) {
-            self.thetas(&nodes, &way.headings, outline, facing)?;
+        let in_gears = !stands && outline.is_some() && Facing::changes(way.facings.iter().copied());
+        let facing = way.facings.iter().copied().reduce(Facing::then).filter(moves).unwrap_or_default();
+        if let Some(outline) = outline.filter(|_| !stands && (in_gears || facing != Facing::Any)) {
+            self.thetas(&nodes, &way, outline)?;
         }
         self.warn_of_actions(order, nodes.iter().chain(&edges))?;
-        let mut trace = way.tracer.finish(way.position.unwrap_or_default());
+        let [in_one_gear, geared] = way.tracers;
+        let tracer = if in_gears { geared } else { in_one_gear };
+        let mut trace = tracer.finish(way.position.unwrap_or_default());
         trace.deviation += way.deviation.max(way.longer) + way.room;
         trace.turned += way.turned;
         if stands && let Some(theta) = rests(&nodes, outline)? {
             (trace.start[2], trace.faces) = (theta, true);
         }
-        Ok((route::agent(id, &trace, &self.vehicle.facing(facing), 0.0), self.vehicle.radius + way.room))
+        let vehicle = if in_gears { self.vehicle.clone() } else { self.vehicle.facing(facing) };
+        Ok((route::agent(id, &trace, &vehicle, 0.0), self.vehicle.radius + way.room))
     }
 
     /// Nodes and edges of the base, or all of them if that is asked for; `updates` has checked that they are one way.
@@ -135,25 +140,26 @@ impl Vda5050Reader<'_> {
         ends: [&OrderElement<'_>; 2],
         is_third: bool,
     ) -> Result<(), ImportError> {
-        if let Some(room) = corridor::read(edge, self.vehicle, self.warnings)?.filter(|room| *room > 0.0) {
-            way.room = way.room.max(room);
-            way.faces(Facing::Any);
-        }
+        let room = corridor::read(edge, self.vehicle, self.warnings)?.filter(|room| *room > 0.0);
+        way.room = way.room.max(room.unwrap_or_default());
+        // Within its room it may face any way.
+        let within = |facing: Facing| if room.is_some() { Facing::Any } else { facing };
         let speed = either(edge, ["maxSpeed", "maximumSpeed"])?;
-        way.tracer.limit(speed, either(edge, ["maxRotationSpeed", "maximumRotationSpeed"])?);
+        let rotation = either(edge, ["maxRotationSpeed", "maximumRotationSpeed"])?;
+        way.tracers.iter_mut().for_each(|tracer| tracer.limit(speed, rotation));
         let target = ends[1].position()?;
         let Some(trajectory) = edge.object("trajectory")? else {
             let from = way.position.ok_or_else(|| unplaced(ends[0]))?;
             let to = target.ok_or_else(|| unplaced(ends[1]))?;
             let ahead = Some((to[1] - from[1]).atan2(to[0] - from[0])).filter(|_| from != to);
-            way.faces(self.facing(edge, is_third, ahead, &[])?);
+            way.faces(within(self.facing(edge, is_third, ahead, &[])?));
             way.line(from, to, ahead);
             return self.has_length(edge, gap(from, to));
         };
         let trajectory = trajectory.called(format!("{}, trajectory", edge.name));
         let vehicle = self.vehicle;
         let read = self.trajectory(&trajectory, vehicle)?;
-        way.faces(self.facing(edge, is_third, None, &read.fit.pieces)?);
+        way.faces(within(self.facing(edge, is_third, None, &read.fit.pieces)?));
         way.follow(edge, &read, target)?;
         self.has_length(edge, read.fit.pieces.iter().map(|piece| piece.shape.length()).sum())
     }
@@ -189,26 +195,26 @@ impl Vda5050Reader<'_> {
         Ok(said.unwrap_or_else(|| vehicle_heading::of_curve(pieces)))
     }
 
-    /// An outline at a node is as the path arrives there, or as it departs; `headings` are those of the edges at both ends.
+    /// An outline at a node is as the path arrives there, or as it departs.
     fn thetas(
         &mut self,
         nodes: &[OrderElement<'_>],
-        headings: &[Option<[f64; 2]>],
+        way: &OrderPathBuilder,
         outline: &Footprint,
-        facing: Facing,
     ) -> Result<(), ImportError> {
-        let turned: &[f64] = match facing {
-            Facing::Ahead => &[0.0],
-            Facing::Backward => &[PI],
-            Facing::Either | Facing::Any => &[0.0, PI],
+        let edges: Vec<(&Option<[f64; 2]>, &Facing)> = way.headings.iter().zip(&way.facings).collect();
+        let at = |edge: usize, end: usize| {
+            let (headings, facing) = edges.get(edge)?;
+            headings.map(|headings| (headings[end], facing.angle()))
         };
         for (k, node) in nodes.iter().enumerate() {
             let Some(theta) = node.theta()? else { continue };
-            let arrives = k.checked_sub(1).and_then(|before| headings.get(before).copied().flatten()).map(|way| way[1]);
-            let departs = headings.get(k).copied().flatten().map(|way| way[0]);
-            let is_there =
-                |heading: f64| turned.iter().any(|turned| vehicle_heading::is_ahead(outline, theta - heading - turned));
-            if !arrives.into_iter().chain(departs).any(is_there) {
+            let arrives = k.checked_sub(1).and_then(|before| at(before, 1));
+            let is_there = |(heading, angle): (f64, Option<f64>)| {
+                let mut angles = angle.map_or([0.0, PI], |angle| [angle; 2]).into_iter();
+                angles.any(|angle| vehicle_heading::is_ahead(outline, theta - heading - angle))
+            };
+            if !arrives.into_iter().chain(at(k, 0)).any(is_there) {
                 vehicle_heading::lose(&node.object, "theta", theta, self.warnings);
             }
         }
@@ -219,11 +225,12 @@ impl Vda5050Reader<'_> {
 impl OrderPathBuilder {
     /// The vehicle faces so on the next edge.
     fn faces(&mut self, next: Facing) {
-        self.facing = Some(self.facing.map_or(next, |before| before.then(next)));
+        self.tracers[1].set_reverse(next == Facing::Backward);
+        self.facings.push(next);
     }
 
     fn line(&mut self, from: [f64; 2], to: [f64; 2], ahead: Option<f64>) {
-        self.tracer.line(from, to);
+        self.tracers.iter_mut().for_each(|tracer| tracer.line(from, to));
         self.headings.push(ahead.map(|heading| [heading; 2]));
         self.position = Some(to);
     }
@@ -244,7 +251,7 @@ impl OrderPathBuilder {
             }
             widest = widest.max(gap);
         }
-        fit.pieces.iter().for_each(|piece| self.tracer.follow(piece));
+        fit.pieces.iter().for_each(|piece| self.tracers.iter_mut().for_each(|tracer| tracer.follow(piece)));
         let ends = fit.pieces.first().zip(fit.pieces.last());
         self.headings.push(ends.map(|(first, last)| [first.heading, last.heading_at_end()]));
         self.position = Some(*end);
