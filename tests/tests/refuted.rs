@@ -271,7 +271,7 @@ fn motions_that_are_none_are_refused<S: HostScalar>() {
         for place in 0..table.agents.len() {
             let mut other = table.clone();
             change(&mut other.agents[place].travel.as_mut().unwrap().phases);
-            let found = Checker::new(&other).map(drop).unwrap_err();
+            let found = Checker::new(&other).map(drop).unwrap_err().to_string();
             assert!(found.contains(why), "{}: {place}: {found}", S::NAME);
         }
     };

@@ -1,6 +1,7 @@
 //! What is printed of a table is proved by the checker that shares nothing with it, and what is damaged is no table.
 
 use pcr_certify::device_dump::decode;
+use pcr_certify::error::CertifyError;
 use pcr_certify::raw::RawTable;
 use pcr_certify::table::{Checker, CoverageMargin};
 use pcr_core::{Ecm, EcmEntry, MismatchError, Piece};
@@ -19,7 +20,7 @@ fn printed<S: Number>(agents: BuiltIn<S>) -> String {
     String::from_utf8(bytes).unwrap()
 }
 
-fn verdict(table: &RawTable) -> Result<[usize; 4], String> {
+fn verdict(table: &RawTable) -> Result<[usize; 4], CertifyError> {
     let found = Checker::new(table)?.check(CoverageMargin::Needed)?;
     Ok([found.refuted.len(), found.undecided.len(), found.pieces, found.times])
 }
@@ -62,7 +63,7 @@ fn damaged_tables_are_errors<S: Number>(agents: BuiltIn<S>) {
     let good: Vec<&str> = text.lines().collect();
     let (_, body) = good.split_last().unwrap();
     assert_eq!(sealed(body), text);
-    let refused = |text: &str| decode(text).and_then(|table| Checker::new(&table).map(drop)).unwrap_err();
+    let refused = |text: &str| decode(text).and_then(|table| Checker::new(&table).map(drop)).unwrap_err().to_string();
     assert!(refused("ego other     from [s]\n").contains("no table"));
     assert!(refused("").contains("no table"));
     assert!(refused(&format!("{text}{text}")).contains("2 tables"));

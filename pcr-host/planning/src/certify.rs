@@ -3,16 +3,19 @@
 //! The types match the JSON output, field by field in this order.
 
 mod certificate_table;
+mod error;
 mod motions;
 mod reported;
 #[cfg(test)]
 mod tests;
 
 pub use certificate_table::CertificateTable;
+pub use error::{CertifyInputError, RegionDifference};
 pub use motions::{CertificateContact, MotionCertificate};
 
 use crate::agent_regions::ProgressFn;
 use pcr_certify::device_dump;
+use pcr_certify::error::CertifyError;
 use pcr_certify::outline;
 use pcr_certify::outline::RawOutlineTable;
 use pcr_certify::pair::{Findings, TableProperty};
@@ -150,7 +153,7 @@ impl CertifyInput {
     ///
     /// # Errors
     /// What is wrong with the text.
-    pub fn of(text: &str, name: &str) -> Result<Self, String> {
+    pub fn of(text: &str, name: &str) -> Result<Self, CertifyInputError> {
         if text.trim_start().starts_with('{') {
             return Self::of_json(text);
         }
@@ -160,26 +163,25 @@ impl CertifyInput {
     /// Reads the tables from a JSON text.
     ///
     /// # Errors
-    /// The problem, in words: another format or version, two agents with one number, or regions that differ from those of the
+    /// Another format or version, two agents with one number, or regions that differ from those of the
     /// tables.
-    pub fn of_json(text: &str) -> Result<Self, String> {
-        let said: CertifyProbe = serde_json::from_str(text).map_err(|error| error.to_string())?;
-        let (format, version) = (ANSWERS, VERSION);
+    pub fn of_json(text: &str) -> Result<Self, CertifyInputError> {
+        let said: CertifyProbe = serde_json::from_str(text)?;
         if said.format.as_ref().is_none_or(|said| said == "pcr-scenario") && said.agents.is_some() {
-            return Err("this is a scenario; without --table, the table that is computed for it is proved".into());
+            return Err(CertifyInputError::Scenario);
         }
-        if let Some(other) = said.format.filter(|said| said != format) {
-            return Err(format!("format: {other} where \"{format}\" is expected"));
+        if let Some(other) = said.format.filter(|said| said != ANSWERS) {
+            return Err(CertifyInputError::Format(other));
         }
         // Version 1 had covers of discs.
-        if let Some(other) = said.version.filter(|said| !(1..=version).any(|known| *said == known)) {
-            return Err(format!("version: {other} where {version} or an earlier one is expected"));
+        if let Some(other) = said.version.filter(|said| !(1..=VERSION).any(|known| *said == known)) {
+            return Err(CertifyInputError::Version(other));
         }
-        if let Some(error) = said.error {
-            return Err(format!("its regions were not computed: {error}"));
+        if let Some(reason) = said.error {
+            return Err(CertifyInputError::NotComputed(reason));
         }
         if said.certificate.is_none() {
-            return Err("there is no certificate in it; pcr regions --json --certificate prints one".into());
+            return Err(CertifyInputError::NoCertificate);
         }
         let has_bodies = |probe: TableKindProbe| probe.certificate.iter().any(|table| table.bodies.is_some());
         if serde_json::from_str(text).is_ok_and(has_bodies) {
@@ -192,8 +194,8 @@ impl CertifyInput {
 
 impl<T: DeserializeOwned + Into<CertificateTable>> RegionsAnswer<T> {
     /// Reads the tables, and compares them with what is told beside them.
-    fn read(text: &str) -> Result<CertifyInput, String> {
-        let answer: Self = serde_json::from_str(text).map_err(|error| error.to_string())?;
+    fn read(text: &str) -> Result<CertifyInput, CertifyInputError> {
+        let answer: Self = serde_json::from_str(text)?;
         let Self { name, labels, warnings, certificate, agent, regions, margin_regions, bodies: told } = answer;
         let certificate: Vec<CertificateTable> = certificate.into_iter().map(T::into).collect();
         let paths: Vec<_> = certificate.iter().map(CertificateTable::paths).collect();
@@ -207,10 +209,7 @@ impl<T: DeserializeOwned + Into<CertificateTable>> RegionsAnswer<T> {
                 reported::enlarged(discs, margins)?;
                 reported::same_corners(bodies, enlarged)?;
             }
-            (more, _) => {
-                let count = more.len();
-                return Err(format!("certificate: {count} tables; there are at most two, the second with margins"));
-            }
+            (more, _) => return Err(CertifyInputError::TableCount(more.len())),
         }
         let lists = [("regions", &regions), ("margin_regions", &margin_regions)];
         let is_told = lists.iter().any(|(_, list)| list.is_some());
@@ -218,10 +217,8 @@ impl<T: DeserializeOwned + Into<CertificateTable>> RegionsAnswer<T> {
         for (place, (name, list)) in lists.into_iter().enumerate() {
             match (list, paths.get(place)) {
                 (Some(list), Some(table)) => reported::compare(name, list, table, asked)?,
-                (Some(_), None) if place > 0 => return Err(format!("{name}: the certificate has no table of them")),
-                (None, Some(_)) if is_told => {
-                    return Err(format!("{name}: missing, and the certificate has a table of them"));
-                }
+                (Some(_), None) if place > 0 => return Err(CertifyInputError::ListWithoutTable(name)),
+                (None, Some(_)) if is_told => return Err(CertifyInputError::TableWithoutList(name)),
                 _ => {}
             }
         }
@@ -248,7 +245,7 @@ impl CertifyReport {
         };
         match checked {
             Ok((findings, margin)) => Self::found(name, table, &findings, margin),
-            Err(problem) => Self::refused(name, problem),
+            Err(problem) => Self::refused(name, problem.to_string()),
         }
     }
 
@@ -326,7 +323,7 @@ impl CertifyReport {
 }
 
 /// What the checker finds, and the margin if it was asked for.
-type Checked = Result<(Findings, Option<f64>), String>;
+type Checked = Result<(Findings, Option<f64>), CertifyError>;
 
 fn of_discs(table: &RawTable, margin: bool, told: &dyn Fn(usize)) -> Checked {
     let checker = Checker::new(table)?;

@@ -8,6 +8,7 @@
 
 use crate::ball::{Ball, BallReal};
 use crate::double_double::DoubleDouble;
+use crate::error::{CertifyError, InputPart};
 use crate::raw::{RawAgent, RawMotion, RawPath, RawPhase};
 
 /// No number of a motion is larger.
@@ -83,34 +84,32 @@ impl BallRamp<DoubleDouble> {
 ///
 /// # Errors
 /// What is wrong with them: numbers that are none, a gap, a way backward, a jump.
-pub fn checked(agent: &RawAgent) -> Result<(), String> {
+pub fn checked(agent: &RawAgent) -> Result<(), CertifyError> {
     let Some(travel) = &agent.travel else { return Ok(()) };
     let numbers = travel.phases.iter().flat_map(|phase| phase.time.into_iter().chain(phase.length).chain(phase.speed));
     if !numbers.chain([travel.start]).all(|number| number.abs() < MOST) {
-        return Err("a number of the motion is out of range".into());
+        return Err(CertifyError::OutOfRange("a number of the motion"));
     }
     if ![travel.lag, travel.time_excess].iter().all(|number| (0.0..MOST).contains(number)) {
-        return Err("what a motion may be off is out of range".into());
+        return Err(CertifyError::OutOfRange("what a motion may be off"));
     }
     let mut reached = [0.0, 0.0];
     for phase in &travel.phases {
         let [time, length] = [phase.time, phase.length];
         if time[0] != reached[0] || length[0] != reached[1] || time[1] < time[0] || length[1] < length[0] {
-            return Err("a phase does not begin where the one before ends".into());
+            return Err(CertifyError::PhaseGap);
         }
         if phase.speed.iter().any(|&speed| speed < 0.0) {
-            return Err("a speed below 0".into());
+            return Err(CertifyError::NegativeSpeed);
         }
-        goes_on(phase, travel, &agent.path).map_err(|problem| {
-            format!("the phase from {} to {} s, from {} to {} m: {problem}", time[0], time[1], length[0], length[1])
-        })?;
+        goes_on(phase, travel, &agent.path).map_err(CertifyError::of(InputPart::Phase { time, length }))?;
         reached = [time[1], length[1]];
     }
     Ok(())
 }
 
 /// Whether a phase can have the speed at its slower end without a way back, and without a jump.
-fn goes_on(phase: &RawPhase, travel: &RawMotion, path: &RawPath) -> Result<(), String> {
+fn goes_on(phase: &RawPhase, travel: &RawMotion, path: &RawPath) -> Result<(), CertifyError> {
     let number = Ball::<DoubleDouble>::from;
     let [time, length] = [phase.time, phase.length];
     let slowest = phase.speed[0].min(phase.speed[1]);
@@ -118,11 +117,11 @@ fn goes_on(phase: &RawPhase, travel: &RawMotion, path: &RawPath) -> Result<(), S
     let way = number(length[1]) - number(length[0]);
     let allowed = rounding(phase, slowest, travel, path);
     if time[0] == time[1] && length[0] < length[1] && !allowed.above(way).is_certain() {
-        return Err("a way that takes no time".into());
+        return Err(CertifyError::Jump);
     }
     // Its speed at the slower end would take it farther, so that it would have to come back.
     if slowest > 0.0 && time[0] < time[1] && !allowed.above(speed * duration - way).is_certain() {
-        return Err(format!("too short a way for {slowest} m/s at its slower end"));
+        return Err(CertifyError::TooShortAWay(slowest));
     }
     Ok(())
 }
@@ -143,7 +142,7 @@ fn rounding(phase: &RawPhase, speed: f64, travel: &RawMotion, path: &RawPath) ->
 ///
 /// # Errors
 /// Where they end.
-pub fn arrives(agent: &RawAgent) -> Result<(), String> {
+pub fn arrives(agent: &RawAgent) -> Result<(), CertifyError> {
     let Some(travel) = &agent.travel else { return Ok(()) };
     let (path, number) = (&agent.path, Ball::<DoubleDouble>::from);
     let [reached, end] = [
@@ -155,7 +154,7 @@ pub fn arrives(agent: &RawAgent) -> Result<(), String> {
     if reached == end || allowed.above(missed).is_certain() {
         return Ok(());
     }
-    Err(format!("its phases end at {reached} m, and its path at {end} m"))
+    Err(CertifyError::Arrival { reached, end })
 }
 
 /// When the last phase ends, since the start \[s\].
@@ -200,7 +199,7 @@ mod tests {
     }
 
     fn refused(phases: &[[[f64; 2]; 3]], why: &str) {
-        let found = checked(&agent(4.0, phases, 0.0)).unwrap_err();
+        let found = checked(&agent(4.0, phases, 0.0)).unwrap_err().to_string();
         assert!(found.contains(why), "{found}");
     }
 
@@ -249,7 +248,7 @@ mod tests {
         assert_eq!(arrives(&agent(4.0, &[whole], 0.0)), Ok(()));
         assert_eq!(arrives(&agent(0.0, &[], 0.0)), Ok(()));
         for short in [agent(4.0, &[], 0.0), agent(4.001, &[whole], 0.0), agent(3.999, &[whole], 0.0)] {
-            assert!(arrives(&short).unwrap_err().contains("its phases end at"));
+            assert!(matches!(arrives(&short), Err(CertifyError::Arrival { .. })));
         }
         let mut late = agent(4.001, &[whole], 0.0);
         late.travel.as_mut().unwrap().lag = 0.001_1;

@@ -20,6 +20,7 @@
 use crate::ball::{Ball, BallReal, Ternary};
 use crate::box_index::{BoxIndex, PlainBox};
 use crate::double_double::DoubleDouble;
+use crate::error::{CertifyError, InputPart};
 use crate::motion::least;
 use crate::moving_disc::{LegMotion, Mover, MoverLeg};
 use crate::raw::RawAgent;
@@ -63,9 +64,10 @@ impl Traversal {
     ///
     /// # Errors
     /// What is wrong with its path, or that it has no motion.
-    pub fn new(agent: &RawAgent) -> Result<Self, String> {
+    pub fn new(agent: &RawAgent) -> Result<Self, CertifyError> {
         let mut agent = agent.clone();
-        let travel = agent.travel.as_mut().ok_or_else(|| format!("agent {}: no motion", agent.id))?;
+        let wrong = CertifyError::of(InputPart::Agent(agent.id, None));
+        let travel = agent.travel.as_mut().ok_or_else(|| wrong(CertifyError::NoMotion))?;
         travel.start = 0.0;
         let duration = travel.phases.last().map_or(0.0, |last| last.time[1]);
         Ok(Self { mover: Mover::new(&agent, [0.0, duration])?, duration })
@@ -75,7 +77,7 @@ impl Traversal {
     ///
     /// # Errors
     /// Numbers that are none or out of range.
-    pub fn straight(radius: f64, ends: [[f64; 2]; 2], speed: f64) -> Result<Self, String> {
+    pub fn straight(radius: f64, ends: [[f64; 2]; 2], speed: f64) -> Result<Self, CertifyError> {
         let mover = Mover::straight(radius, ends, speed)?;
         Ok(Self { duration: mover.moves[1], mover })
     }

@@ -16,6 +16,7 @@
 //! Counts are decimal, all else is hexadecimal: IEEE 754, two's complement, angles in radians or in parts of 2^32 of a turn. What stands
 //! before the first line and behind the last one does not count. A table that is cut, has another line in it or one twice, is an error.
 
+use crate::error::{CertifyError, InputPart};
 use crate::raw::{
     RawAgent, RawAngle, RawBranch, RawMotion, RawPair, RawPath, RawPhase, RawPiece, RawRegion, RawSegment, RawTable,
 };
@@ -31,25 +32,25 @@ enum DumpFormat {
 }
 
 impl DumpFormat {
-    fn named(name: &str) -> Result<Self, String> {
+    fn named(name: &str) -> Result<Self, CertifyError> {
         match name {
             "f32" | "micro" => Ok(Self::Float),
             "q20" => Ok(Self::Fixed(20)),
             "q16" => Ok(Self::Fixed(16)),
             "q12" => Ok(Self::Fixed(12)),
-            _ => Err(format!("{name} is no number format; known are f32, micro, q20, q16 and q12")),
+            _ => Err(CertifyError::UnknownFormat(name.to_owned())),
         }
     }
 
-    fn number(self, bits: u32) -> Result<f64, String> {
+    fn number(self, bits: u32) -> Result<f64, CertifyError> {
         let value = match self {
             Self::Float => f64::from(f32::from_bits(bits)),
             Self::Fixed(digits) => f64::from(bits.cast_signed()) * f64::powi(2.0, -digits),
         };
-        if value.is_finite() { Ok(value) } else { Err(format!("{bits:08x} is no number")) }
+        if value.is_finite() { Ok(value) } else { Err(CertifyError::NotFinite(bits)) }
     }
 
-    fn angle(self, bits: u32) -> Result<RawAngle, String> {
+    fn angle(self, bits: u32) -> Result<RawAngle, CertifyError> {
         match self {
             Self::Float => self.number(bits).map(RawAngle::Radians),
             Self::Fixed(_) => Ok(RawAngle::Turns(f64::from(bits.cast_signed()) / 4_294_967_296.0)),
@@ -88,38 +89,42 @@ struct DumpWords<'a> {
 }
 
 impl<'a> DumpWords<'a> {
-    fn word(&mut self) -> Result<&'a str, String> {
-        self.words.next().ok_or_else(|| "a word is missing".into())
+    fn word(&mut self) -> Result<&'a str, CertifyError> {
+        self.words.next().ok_or(CertifyError::MissingWord)
     }
 
-    fn count(&mut self) -> Result<usize, String> {
+    fn count(&mut self) -> Result<usize, CertifyError> {
         let word = self.word()?;
         match word.parse::<u16>() {
             Ok(count) => Ok(usize::from(count)),
-            Err(_) => Err(format!("{word} is no count")),
+            Err(_) => Err(CertifyError::NoCount(word.to_owned())),
         }
     }
 
-    fn bits(&mut self) -> Result<u32, String> {
+    fn bits(&mut self) -> Result<u32, CertifyError> {
         let word = self.word()?;
         // A sign would be read, too.
         let hexadecimal = word.len() == 8 && word.bytes().all(|byte| byte.is_ascii_hexdigit());
         let bits = u32::from_str_radix(word, 16).ok().filter(|_| hexadecimal);
-        bits.ok_or_else(|| format!("{word} is not eight hexadecimal digits"))
+        bits.ok_or_else(|| CertifyError::NotHexadecimal(word.to_owned()))
     }
 
-    fn number(&mut self) -> Result<f64, String> {
+    fn number(&mut self) -> Result<f64, CertifyError> {
         let bits = self.bits()?;
         self.format.number(bits)
     }
 
-    fn range(&mut self) -> Result<[f64; 2], String> {
+    fn range(&mut self) -> Result<[f64; 2], CertifyError> {
         Ok([self.number()?, self.number()?])
     }
 
-    fn end(mut self) -> Result<(), String> {
-        self.words.next().map_or(Ok(()), |word| Err(format!("{word} is one word too many")))
+    fn end(mut self) -> Result<(), CertifyError> {
+        self.words.next().map_or(Ok(()), |word| Err(CertifyError::ExtraWord(word.to_owned())))
     }
+}
+
+fn unexpected(found: &str, expected: &'static str) -> CertifyError {
+    CertifyError::Unexpected { found: found.to_owned(), expected }
 }
 
 /// The lines of a table.
@@ -134,8 +139,8 @@ struct DumpLines<'a> {
 
 impl<'a> DumpLines<'a> {
     /// The first word of the next line, and its words.
-    fn next(&mut self) -> Result<(&'a str, DumpWords<'a>), String> {
-        let (place, line) = self.lines.next().ok_or("the table is cut: it has no end")?;
+    fn next(&mut self) -> Result<(&'a str, DumpWords<'a>), CertifyError> {
+        let (place, line) = self.lines.next().ok_or(CertifyError::Cut)?;
         self.number = place + 1;
         let mut words = DumpWords { words: line.split_whitespace(), format: self.format };
         let first = words.word()?;
@@ -145,12 +150,12 @@ impl<'a> DumpLines<'a> {
         Ok((first, words))
     }
 
-    fn expect(&mut self, name: &str) -> Result<DumpWords<'a>, String> {
+    fn expect(&mut self, name: &'static str) -> Result<DumpWords<'a>, CertifyError> {
         let (first, words) = self.next()?;
-        if first == name { Ok(words) } else { Err(format!("{first} where {name} is expected")) }
+        if first == name { Ok(words) } else { Err(unexpected(first, name)) }
     }
 
-    fn agent(&mut self, id: u64) -> Result<RawAgent, String> {
+    fn agent(&mut self, id: u64) -> Result<RawAgent, CertifyError> {
         let mut words = self.expect("agent")?;
         let [segments, phases] = [words.count()?, words.count()?];
         let (radius, start) = (words.number()?, [words.number()?, words.number()?]);
@@ -164,30 +169,30 @@ impl<'a> DumpLines<'a> {
         Ok(RawAgent { id, radius, path, travel: Some(RawMotion { start: from, phases, lag, time_excess }) })
     }
 
-    fn segment(&mut self) -> Result<RawSegment, String> {
+    fn segment(&mut self) -> Result<RawSegment, CertifyError> {
         let (kind, mut words) = self.next()?;
         let radius = match kind {
             "line" => None,
             "left" => Some(words.number()?),
             "right" => Some(-words.number()?),
-            _ => return Err(format!("{kind} where line, left or right is expected")),
+            _ => return Err(unexpected(kind, "line, left or right")),
         };
         if radius.is_some_and(|radius| (radius < 0.0) != (kind == "right")) {
-            return Err("a radius that is not above 0".into());
+            return Err(CertifyError::RadiusNotPositive);
         }
         let [length, from, to] = [words.number()?, words.number()?, words.number()?];
         words.end()?;
         Ok(RawSegment { length, radius, turns: Vec::new(), from, to })
     }
 
-    fn phase(&mut self) -> Result<RawPhase, String> {
+    fn phase(&mut self) -> Result<RawPhase, CertifyError> {
         let mut words = self.expect("phase")?;
         let phase = RawPhase { time: words.range()?, length: words.range()?, speed: words.range()? };
         words.end()?;
         Ok(phase)
     }
 
-    fn pair(&mut self, mut words: DumpWords<'_>) -> Result<RawPair, String> {
+    fn pair(&mut self, mut words: DumpWords<'_>) -> Result<RawPair, CertifyError> {
         let agents = [words.count()?, words.count()?];
         let (count, excess) = (words.count()?, words.number()?);
         words.end()?;
@@ -206,14 +211,14 @@ impl<'a> DumpLines<'a> {
         Ok(pair)
     }
 
-    fn piece(&mut self, region: usize) -> Result<RawPiece, String> {
+    fn piece(&mut self, region: usize) -> Result<RawPiece, CertifyError> {
         let mut words = self.expect("piece")?;
         let segments = [words.count()?, words.count()?];
         let share = match words.word()? {
             "only" => RawBranch::Only,
             "start" => RawBranch::Start,
             "end" => RawBranch::End,
-            other => return Err(format!("{other} is no share")),
+            other => return Err(CertifyError::NoShare(other.to_owned())),
         };
         let lengths = [words.range()?, words.range()?];
         words.end()?;
@@ -221,7 +226,7 @@ impl<'a> DumpLines<'a> {
     }
 
     /// The pairs, up to the end.
-    fn pairs(&mut self) -> Result<Vec<RawPair>, String> {
+    fn pairs(&mut self) -> Result<Vec<RawPair>, CertifyError> {
         let mut pairs = Vec::new();
         loop {
             let (first, mut words) = self.next()?;
@@ -231,13 +236,9 @@ impl<'a> DumpLines<'a> {
                     let told = words.bits()?;
                     words.end()?;
                     let sum = !self.sum;
-                    return if told == sum {
-                        Ok(pairs)
-                    } else {
-                        Err(format!("its check is {told:08x}, not {sum:08x}"))
-                    };
+                    return if told == sum { Ok(pairs) } else { Err(CertifyError::Checksum { told, sum }) };
                 }
-                other => return Err(format!("{other} where pair or end is expected")),
+                other => return Err(unexpected(other, "pair or end")),
             }
         }
     }
@@ -247,12 +248,12 @@ impl<'a> DumpLines<'a> {
 ///
 /// # Errors
 /// What is wrong with it, and in which line.
-pub fn decode(text: &str) -> Result<RawTable, String> {
+pub fn decode(text: &str) -> Result<RawTable, CertifyError> {
     let is_head = |line: &str| line.split_whitespace().next() == Some("pcr-table");
     match text.lines().filter(|line| is_head(line)).count() {
-        0 => return Err("there is no table in it: neither JSON nor a line that begins with pcr-table".into()),
+        0 => return Err(CertifyError::NoTable),
         1 => {}
-        count => return Err(format!("there are {count} tables in it")),
+        count => return Err(CertifyError::Tables(count)),
     }
     let mut lines = DumpLines { lines: text.lines().enumerate(), format: DumpFormat::Float, sum: !0, number: 0 };
     loop {
@@ -266,7 +267,7 @@ pub fn decode(text: &str) -> Result<RawTable, String> {
         let (_, mut words) = lines.next()?;
         let version = words.word()?;
         if version != VERSION {
-            return Err(format!("version {version} of tables is not known"));
+            return Err(CertifyError::UnknownVersion(version.to_owned()));
         }
         lines.format = DumpFormat::named(words.word()?)?;
         let count = words.count()?;
@@ -274,7 +275,8 @@ pub fn decode(text: &str) -> Result<RawTable, String> {
         let agents = (0..count as u64).map(|id| lines.agent(id)).collect::<Result<_, _>>()?;
         Ok(RawTable { agents, pairs: lines.pairs()?, apart: None })
     };
-    read().map_err(|problem: String| format!("line {}: {problem}", lines.number))
+    let read = read();
+    read.map_err(CertifyError::of(InputPart::Line(lines.number)))
 }
 
 #[cfg(test)]

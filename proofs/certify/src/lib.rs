@@ -10,6 +10,7 @@
 //! ball               numbers with a bound on their error, of 53 or 106 bits; answers that may be a doubt
 //! plane              lines and arcs, parts of them, distances from a point      bounds of lemma 3
 //! distance_claim     all of a part farther than, or within, so much of another  lemmas 3 and 5
+//! error              why what is read is refused
 //! raw                what is read: paths, motions, pieces
 //! device_dump        the same from the text that a microcontroller prints
 //! path               segments in the plane
@@ -59,7 +60,7 @@
 //! assert!(short.refuted[0].clearance < 0.0); // a contact outside of the piece
 //! let long = verdict(0.502)?;
 //! assert!(long.refuted[0].clearance > 1e-3); // told, but farther than ε from any contact
-//! # Ok::<(), String>(())
+//! # Ok::<(), pcr_certify::error::CertifyError>(())
 //! ```
 #![forbid(unsafe_code)]
 
@@ -71,6 +72,7 @@ pub mod delays;
 pub mod device_dump;
 pub mod distance_claim;
 pub mod double_double;
+pub mod error;
 pub mod motion;
 pub mod moving_disc;
 pub mod outline;

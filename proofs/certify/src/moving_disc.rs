@@ -20,6 +20,7 @@ use crate::arc_length_motion::{self, BallRamp};
 use crate::ball::{Ball, BallReal};
 use crate::box_index::{PlainBox, area};
 use crate::double_double::DoubleDouble;
+use crate::error::CertifyError;
 use crate::path::{PreparedSegment, stretches};
 use crate::plane::{BallCarrier, BallVector};
 use crate::raw::{RawAgent, RawPhase};
@@ -92,19 +93,21 @@ impl Mover {
     ///
     /// # Errors
     /// What is wrong with its path, or that it has no motion.
-    pub fn new(agent: &RawAgent, time: [f64; 2]) -> Result<Self, String> {
+    pub fn new(agent: &RawAgent, time: [f64; 2]) -> Result<Self, CertifyError> {
         if !(0.0..=1e15).contains(&agent.radius) {
-            return Err(format!("a radius of {} is out of range", agent.radius));
+            return Err(CertifyError::ValueOutOfRange("a radius of", agent.radius));
         }
         let stretches = stretches(&agent.path)?;
-        let travel = agent.travel.as_ref().ok_or("no motion")?;
+        let travel = agent.travel.as_ref().ok_or(CertifyError::NoMotion)?;
         let start = DoubleDouble::from(travel.start);
         arc_length_motion::checked(agent)?;
         let stands = |place: usize, stretch: &PreparedSegment, at: DoubleDouble| {
             let course = LegMotion { carrier: stretch.placed.exact, ramp: BallRamp::standing(at) };
             MoverLeg { exact: course, near: LegMotion::of(&course), place, speed: 0.0, curvature: 0.0, off: 0.0 }
         };
-        let (Some(first), Some(last)) = (stretches.first(), stretches.last()) else { return Err("no segments".into()) };
+        let (Some(first), Some(last)) = (stretches.first(), stretches.last()) else {
+            return Err(CertifyError::NoSegments);
+        };
         let mut legs = vec![(f64::NEG_INFINITY, stands(0, first, DoubleDouble::ZERO))];
         let mut span = LegSpan { begin: 0, speeds: [0.0; 2], times: [start; 2], rounding_gap: 0.0 };
         let (mut arrival, mut reached, mut hidden, mut all_hidden) = (start, 0.0, 0.0, 0.0);
@@ -151,11 +154,11 @@ impl Mover {
     ///
     /// # Errors
     /// Numbers that are out of range.
-    pub(crate) fn straight(radius: f64, [from, to]: [[f64; 2]; 2], speed: f64) -> Result<Self, String> {
+    pub(crate) fn straight(radius: f64, [from, to]: [[f64; 2]; 2], speed: f64) -> Result<Self, CertifyError> {
         const MOST: f64 = 1e15;
         let numbers = [from[0], from[1], to[0], to[1], radius, speed];
         if !numbers.iter().all(|number| number.abs() <= MOST) || radius < 0.0 || speed <= 0.0 {
-            return Err(format!("a disc of {radius} m from {from:?} to {to:?} m at {speed} m/s is out of range"));
+            return Err(CertifyError::StraightOutOfRange { radius, ends: [from, to], speed });
         }
         let number = Ball::<DoubleDouble>::from;
         let point = |[x, y]: [f64; 2]| BallVector { x: number(x), y: number(y) };
@@ -166,7 +169,7 @@ impl Mover {
         let duration = length / number(speed);
         let duration = if from == to { 0.0 } else { (duration.to_f64() + duration.err).next_up() };
         if duration.is_nan() || duration > MOST {
-            return Err(format!("from {from:?} to {to:?} m at {speed} m/s takes too long"));
+            return Err(CertifyError::StraightTooLong { ends: [from, to], speed });
         }
         let standing = BallRamp::standing(DoubleDouble::ZERO);
         let leg = |ramp: BallRamp<DoubleDouble>, speed: f64| {

@@ -48,7 +48,7 @@
 //! let passing = verdict(0.801)?;
 //! assert!(passing.findings.refuted.is_empty() && passing.findings.undecided.is_empty());
 //! assert_eq!(verdict(0.799)?.findings.refuted.len(), 1); // they touch
-//! # Ok::<(), String>(())
+//! # Ok::<(), pcr_certify::error::CertifyError>(())
 //! ```
 
 pub mod body;

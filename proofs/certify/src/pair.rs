@@ -3,6 +3,7 @@
 use crate::ball::Ball;
 use crate::distance_claim::{ClaimVerdict, DualPrecisionPart};
 use crate::double_double::DoubleDouble;
+use crate::error::CertifyError;
 use crate::path::PreparedSegment;
 use crate::raw::{RawBranch, RawPair, RawPiece};
 
@@ -196,23 +197,26 @@ pub struct PieceOnSegments {
 ///
 /// # Errors
 /// What is wrong with them.
-pub fn pieces_of(pieces: &[RawPiece], stretches: [&[PreparedSegment]; 2]) -> Result<Vec<PieceOnSegments>, String> {
+pub fn pieces_of(
+    pieces: &[RawPiece],
+    stretches: [&[PreparedSegment]; 2],
+) -> Result<Vec<PieceOnSegments>, CertifyError> {
     let mut placed = Vec::with_capacity(pieces.len());
     for piece in pieces {
         let mut lengths = [[DoubleDouble::ZERO; 2]; 2];
         for k in [0, 1] {
-            let stretch = stretches[k].get(piece.segments[k]).ok_or("a piece of a segment that is not there")?;
+            let stretch = stretches[k].get(piece.segments[k]).ok_or(CertifyError::NoSuchSegment)?;
             let [lo, hi] = piece.lengths[k];
             if !(stretch.contains(lo) && stretch.contains(hi) && lo <= hi) {
-                return Err(format!("a piece from {lo} to {hi} m is not on its segment"));
+                return Err(CertifyError::PieceOffSegment([lo, hi]));
             }
             if !(stretch.is_of_format(lo) && stretch.is_of_format(hi)) {
-                return Err(format!("a piece from {lo} to {hi} m has ends that its number format has not"));
+                return Err(CertifyError::PieceOffFormat([lo, hi]));
             }
             lengths[k] = stretch.range([lo, hi]);
         }
         if piece.share != RawBranch::Only && stretches[0][piece.segments[0]].turns_left().is_none() {
-            return Err("a piece that stands for one of two intervals of a line".into());
+            return Err(CertifyError::LineBranch);
         }
         placed.push(PieceOnSegments { segments: piece.segments, lengths, share: piece.share, region: piece.region });
     }

@@ -3,6 +3,7 @@
 use crate::ball::{Ball, Real106};
 use crate::distance_claim::SegmentCarrier;
 use crate::double_double::DoubleDouble;
+use crate::error::{CertifyError, InputPart};
 use crate::plane::{BallCarrier, BallVector};
 use crate::raw::{RawAngle, RawPath, RawSegment};
 
@@ -119,14 +120,12 @@ pub(crate) fn radians(angle: RawAngle) -> Real106 {
 /// The unit vector in a direction: up to 2^25 rad the sine and cosine are as right as those of smaller angles (`twofold.rs`).
 ///
 /// Always from the sum of all angles: a vector that is turned again and again has a bound that grows by up to √2 each time.
-pub(crate) fn unit(heading: Real106) -> Result<BallVector<DoubleDouble>, String> {
+pub(crate) fn unit(heading: Real106) -> Result<BallVector<DoubleDouble>, CertifyError> {
     let allowed = 2.0 * MOST_HEADING;
     // What is no number is not within it either.
     if heading.to_f64().abs().partial_cmp(&allowed).is_none_or(std::cmp::Ordering::is_gt) {
-        let heading = heading.to_f64();
-        return Err(format!(
-            "its direction of {heading} rad is out of range; allowed is up to {allowed:e} in magnitude"
-        ));
+        let (name, angle) = ("its direction of", heading.to_f64());
+        return Err(CertifyError::AngleTooLarge { name, angle, unit: " rad", most: allowed });
     }
     let (sin, cos) = heading.mid.sin_cos();
     let err = heading.err + 8e-31;
@@ -134,33 +133,33 @@ pub(crate) fn unit(heading: Real106) -> Result<BallVector<DoubleDouble>, String>
     Ok(BallVector { x, y })
 }
 
-fn fits(value: f64, name: &str) -> Result<(), String> {
-    if value.abs() <= MOST { Ok(()) } else { Err(format!("{name} {value} is out of range")) }
+fn fits(value: f64, name: &'static str) -> Result<(), CertifyError> {
+    if value.abs() <= MOST { Ok(()) } else { Err(CertifyError::ValueOutOfRange(name, value)) }
 }
 
 /// The segments of a path.
 ///
 /// # Errors
 /// What is wrong with it.
-pub fn stretches(path: &RawPath) -> Result<Vec<PreparedSegment>, String> {
+pub fn stretches(path: &RawPath) -> Result<Vec<PreparedSegment>, CertifyError> {
     let [x, y] = path.start;
     fits(x, "x")?;
     fits(y, "y")?;
     // A power of two has no bit set in its fraction.
     let is_power = path.step.to_bits() << 12 == 0 && (2.0_f64.powi(-32)..=1.0).contains(&path.step);
     if path.step != 0.0 && !is_power {
-        return Err(format!("the step {} is none of a fixed-point format", path.step));
+        return Err(CertifyError::Step(path.step));
     }
     let (RawAngle::Radians(heading) | RawAngle::Turns(heading)) = path.heading;
     if heading.abs() > MOST_HEADING || heading.is_nan() {
-        return Err(format!("heading {heading} is out of range; allowed is up to {MOST_HEADING:e} in magnitude"));
+        return Err(CertifyError::AngleTooLarge { name: "heading", angle: heading, unit: "", most: MOST_HEADING });
     }
     let mut heading = radians(path.heading);
     let mut at = BallVector { x: Ball::from(x), y: Ball::from(y) };
     let mut before = DoubleDouble::ZERO;
     let (mut stretches, mut sum) = (Vec::with_capacity(path.segments.len()), 0.0);
     for (place, segment) in path.segments.iter().enumerate() {
-        let wrong = |problem: String| format!("segment {place}: {problem}");
+        let wrong = CertifyError::of(InputPart::Segment(place));
         checked(segment, sum).map_err(wrong)?;
         heading = segment.turns.iter().fold(heading, |heading, &by| heading + radians(by));
         let direction = unit(heading).map_err(wrong)?;
@@ -183,40 +182,40 @@ pub fn stretches(path: &RawPath) -> Result<Vec<PreparedSegment>, String> {
             let off = (DoubleDouble::from(end) - exact).abs().to_f64();
             // Whatever is no number is wrong.
             if off.partial_cmp(&path.rounding).is_none_or(std::cmp::Ordering::is_gt) {
-                return Err(wrong(format!("its lengths along the path are off by {off:e} m")));
+                return Err(wrong(CertifyError::LengthsOff(off)));
             }
         }
         let step = path.step;
         if ![segment.length, segment.from, segment.to].into_iter().all(|length| is_multiple(length, step)) {
-            return Err(wrong(format!("its lengths are no multiples of {step:e} m")));
+            return Err(wrong(CertifyError::NoMultiples(step)));
         }
         stretches.push(PreparedSegment { placed, before, from: segment.from, to: segment.to, step });
         (before, sum) = (before + length, segment.to);
     }
-    if stretches.is_empty() { Err("no segments".into()) } else { Ok(stretches) }
+    if stretches.is_empty() { Err(CertifyError::NoSegments) } else { Ok(stretches) }
 }
 
 fn is_multiple(length: f64, step: f64) -> bool {
     step == 0.0 || (length / step).fract() == 0.0
 }
 
-fn checked(segment: &RawSegment, sum: f64) -> Result<(), String> {
+fn checked(segment: &RawSegment, sum: f64) -> Result<(), CertifyError> {
     fits(segment.length, "length")?;
     fits(segment.radius.unwrap_or(1.0), "radius")?;
     if segment.length < 0.0 || segment.radius == Some(0.0) {
-        return Err("a length below 0 or a radius of 0".into());
+        return Err(CertifyError::LengthOrRadius);
     }
     for (name, value) in [("length", Some(segment.length)), ("radius", segment.radius)] {
-        if let Some(tiny) = value.filter(|&value| value != 0.0 && value.abs() < LEAST) {
-            return Err(format!("{name} {tiny:e} is out of range; the least one is {LEAST:e}"));
+        if let Some(value) = value.filter(|&value| value != 0.0 && value.abs() < LEAST) {
+            return Err(CertifyError::TooSmall { name, value, least: LEAST });
         }
     }
     // A full turn rounded to the last digit of a format may be more: 13 digits for a radius of 2.
     if segment.radius.is_some_and(|radius| segment.length > 7.0 * radius.abs()) {
-        return Err("more than one turn".into());
+        return Err(CertifyError::MoreThanATurn);
     }
     if segment.from != sum || segment.to.is_nan() || segment.to < segment.from {
-        return Err("it does not begin where the one before ends".into());
+        return Err(CertifyError::SegmentGap);
     }
     Ok(())
 }
@@ -279,7 +278,7 @@ mod tests {
             let segments = vec![RawSegment { length: 1.0, radius: None, turns, from: 0.0, to: 1.0 }];
             let path = RawPath { start: [0.0; 2], heading, segments, rounding: 0.0, step: 0.0 };
             let stretch = stretches(&path)?.remove(0);
-            Ok::<_, String>(stretch.placed.exact.point(Ball::from(1.0)))
+            Ok::<_, CertifyError>(stretch.placed.exact.point(Ball::from(1.0)))
         };
         // The sine to 32 digits, also of about the largest one and of the nearest to a quarter turn.
         let sines = [
@@ -293,7 +292,7 @@ mod tests {
                 Ok(there) => there,
                 Err(refused) => {
                     let allowed = "heading 33554431.5 is out of range; allowed is up to 1.6777216e7 in magnitude";
-                    assert_eq!(refused, allowed);
+                    assert_eq!(refused.to_string(), allowed);
                     line(RawAngle::Radians(0.5 * heading), &[0.5 * heading]).unwrap()
                 }
             };
@@ -303,7 +302,7 @@ mod tests {
         // Nothing is told of what is beyond, and it is named.
         let refused = line(RawAngle::Radians(0.0), &[2e7, 2e7]).unwrap_err();
         let allowed = "its direction of 40000000 rad is out of range; allowed is up to 3.3554432e7 in magnitude";
-        assert_eq!(refused, format!("segment 0: {allowed}"));
+        assert_eq!(refused.to_string(), format!("segment 0: {allowed}"));
         assert!(line(RawAngle::Radians(0.0), &[f64::NAN]).is_err());
     }
 
@@ -321,7 +320,7 @@ mod tests {
         }
         // The quotient of the first two is right within 2^-13 only.
         for (length, radius) in [(8.7e-316, Some(3.3e-316)), (1e-250, None), (0.0, Some(-1e-201))] {
-            let refused = stretches(&path(length, radius)).unwrap_err();
+            let refused = stretches(&path(length, radius)).unwrap_err().to_string();
             assert!(refused.contains("is out of range; the least one is 1e-200"), "{refused}");
         }
     }

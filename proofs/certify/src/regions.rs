@@ -7,6 +7,7 @@
 use crate::arc_length_motion;
 use crate::distance_claim::{ClaimVerdict, DistanceClaim};
 use crate::double_double::DoubleDouble;
+use crate::error::{CertifyError, InputPart};
 use crate::pair::{Findings, PairRadii, PieceOnSegments, SegmentPairPieces, TableProperty, gaps};
 use crate::path::PreparedSegment;
 use crate::raw::{RawAgent, RawMotion, RawPair};
@@ -83,20 +84,21 @@ pub(crate) fn check(
     pieces: &[PieceOnSegments],
     distances: &impl Distances,
     findings: &mut Findings,
-) -> Result<(), String> {
+) -> Result<(), CertifyError> {
     lengths_are_those_of_pieces(pair)?;
     for (place, region) in pair.regions.iter().enumerate() {
+        let wrong = CertifyError::of(InputPart::Region(place));
         let times = match (region.times, agents.map(|agent| agent.travel.as_ref())) {
             (None, [None, None]) => continue,
             (Some(times), [Some(first), Some(second)]) => [(times[0], first), (times[1], second)],
-            _ => return Err(format!("region {place}: a time without a motion, or a motion without a time")),
+            _ => return Err(wrong(CertifyError::TimeWithoutMotion)),
         };
         findings.times += 1;
         let those: Vec<&PieceOnSegments> = pieces.iter().filter(|piece| piece.region == place).collect();
         for (k, (time, travel)) in times.into_iter().enumerate() {
             let [from, to] = time;
             if !(from <= to && from.abs() < 1e15 && to.abs() < 1e15) {
-                return Err(format!("region {place}: its time from {from} to {to} s is none"));
+                return Err(wrong(CertifyError::NoTime(time)));
             }
             let told = ReportedTime { region: place, k, time, travel, agent: agents[k], lengths: region.lengths[k] };
             for end in [0, 1] {
@@ -107,17 +109,17 @@ pub(crate) fn check(
     Ok(())
 }
 
-fn lengths_are_those_of_pieces(pair: &RawPair) -> Result<(), String> {
+fn lengths_are_those_of_pieces(pair: &RawPair) -> Result<(), CertifyError> {
     let mut hulls: Vec<Option<[[f64; 2]; 2]>> = vec![None; pair.regions.len()];
     for piece in &pair.pieces {
-        let hull = hulls.get_mut(piece.region).ok_or("a piece of a region that is not there")?;
+        let hull = hulls.get_mut(piece.region).ok_or(CertifyError::NoSuchRegion)?;
         let all = hull.get_or_insert(piece.lengths);
         for (all, own) in all.iter_mut().zip(piece.lengths) {
             *all = [all[0].min(own[0]), all[1].max(own[1])];
         }
     }
     let wrong = pair.regions.iter().zip(hulls).position(|(region, hull)| hull != Some(region.lengths));
-    wrong.map_or(Ok(()), |place| Err(format!("region {place}: its lengths are not those of its pieces")))
+    wrong.map_or(Ok(()), |place| Err(CertifyError::of(InputPart::Region(place))(CertifyError::RegionLengths)))
 }
 
 /// The time of one agent of a region.

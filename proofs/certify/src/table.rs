@@ -5,6 +5,7 @@ use crate::ball::Ball;
 use crate::box_index::{BoxIndex, PlainBox, area};
 use crate::distance_claim::DualPrecisionPart;
 use crate::double_double::DoubleDouble;
+use crate::error::{CertifyError, InputPart};
 use crate::pair::{Findings, PairRadii, SegmentPairPieces, pieces_of};
 use crate::path::{LEAST, PreparedSegment, stretches};
 use crate::raw::{RawAgent, RawPair, RawTable};
@@ -52,9 +53,9 @@ impl ProximityIndex {
     ///
     /// # Errors
     /// A path that is none.
-    pub fn new(agents: &[RawAgent], excess: f64) -> Result<Self, String> {
+    pub fn new(agents: &[RawAgent], excess: f64) -> Result<Self, CertifyError> {
         let area = |agent: &RawAgent| Ok(swept_box(agent, &stretches(&agent.path)?, excess));
-        Ok(Self(BoxIndex::new(agents.iter().map(area).collect::<Result<_, String>>()?)))
+        Ok(Self(BoxIndex::new(agents.iter().map(area).collect::<Result<_, CertifyError>>()?)))
     }
 
     /// Places behind this one that may come near it, in order.
@@ -75,12 +76,12 @@ impl<'a> Checker<'a> {
     ///
     /// # Errors
     /// What is wrong with the table: numbers out of range, a path that is none, a pair that is missing or there twice.
-    pub fn new(table: &'a RawTable) -> Result<Self, String> {
+    pub fn new(table: &'a RawTable) -> Result<Self, CertifyError> {
         let agents = table.agents.iter().enumerate().map(|(place, agent)| {
-            let wrong = |problem: String| format!("agent {} (place {place}): {problem}", agent.id);
+            let wrong = CertifyError::of(InputPart::Agent(agent.id, Some(place)));
             let numbers = [agent.radius, agent.path.rounding, agent.travel.as_ref().map_or(0.0, |travel| travel.lag)];
             if !numbers.iter().all(|&number| (0.0..1e15).contains(&number)) {
-                return Err(wrong("a radius, rounding or lag is out of range".into()));
+                return Err(wrong(CertifyError::OutOfRange("a radius, rounding or lag")));
             }
             let stretches = stretches(&agent.path).map_err(wrong)?;
             arc_length_motion::checked(agent).and_then(|()| arc_length_motion::arrives(agent)).map_err(wrong)?;
@@ -93,21 +94,21 @@ impl<'a> Checker<'a> {
         Ok(checker)
     }
 
-    fn all_pairs_are_there(&self) -> Result<(), String> {
+    fn all_pairs_are_there(&self) -> Result<(), CertifyError> {
         let count = self.agents.len();
         let id = |place: usize| self.agents[place].agent.id;
         let mut there = HashSet::with_capacity(self.pairs.len());
         for pair in self.pairs {
             let [a, b] = pair.agents;
             if a == b || a >= count || b >= count || id(a) == id(b) || !there.insert([a.min(b), a.max(b)]) {
-                return Err(format!("the pair of places {a} and {b} is none, or there twice"));
+                return Err(CertifyError::NoPair([a, b]));
             }
             if !(LEAST..1e15).contains(&pair.excess) {
-                return Err(format!("the excess of places {a} and {b} is out of range"));
+                return Err(CertifyError::Excess([a, b]));
             }
             // The rounding of a full turn, to a whole digit of sixteen; of what is more there would be a third lap.
             if let Some(place) = [a, b].into_iter().find(|&place| self.agents[place].over > 0.125 * pair.excess) {
-                return Err(format!("an arc of place {place} is longer than a turn"));
+                return Err(CertifyError::ArcTooLong(place));
             }
         }
         if let Some(excess) = self.apart {
@@ -121,20 +122,19 @@ impl<'a> Checker<'a> {
         }
         let all = (0..count).flat_map(|a| (a + 1..count).map(move |b| [a, b]));
         let missing = all.into_iter().find(|&[a, b]| id(a) != id(b) && !there.contains(&[a, b]));
-        let [a, b] = missing.unwrap_or_default();
-        Err(format!("the pair of places {a} and {b} is missing"))
+        Err(CertifyError::MissingPair(missing.unwrap_or_default()))
     }
 
-    fn all_near_are_among(&self, there: &HashSet<[usize; 2]>, excess: f64) -> Result<(), String> {
+    fn all_near_are_among(&self, there: &HashSet<[usize; 2]>, excess: f64) -> Result<(), CertifyError> {
         if !(LEAST..1e15).contains(&excess) {
-            return Err("the excess of those that are left out is out of range".into());
+            return Err(CertifyError::OutOfRange("the excess of those that are left out"));
         }
         let area = |placed: &PreparedAgent<'_>| swept_box(placed.agent, &placed.stretches, excess);
         let (near, id) =
             (BoxIndex::new(self.agents.iter().map(area).collect()), |place: usize| self.agents[place].agent.id);
         let missing = |a: usize| near.after(a).into_iter().find(|&b| id(a) != id(b) && !there.contains(&[a, b]));
         match (0..self.agents.len()).find_map(|a| missing(a).map(|b| (a, b))) {
-            Some((a, b)) => Err(format!("the pair of places {a} and {b} is missing, and they come near one another")),
+            Some((a, b)) => Err(CertifyError::MissingNearPair([a, b])),
             None => Ok(()),
         }
     }
@@ -143,7 +143,7 @@ impl<'a> Checker<'a> {
     ///
     /// # Errors
     /// A piece that is none.
-    pub fn check(&self, margin: CoverageMargin) -> Result<Findings, String> {
+    pub fn check(&self, margin: CoverageMargin) -> Result<Findings, CertifyError> {
         self.watched(margin, &|_| {})
     }
 
@@ -151,7 +151,7 @@ impl<'a> Checker<'a> {
     ///
     /// # Errors
     /// A piece that is none.
-    pub fn watched(&self, margin: CoverageMargin, told: &dyn Fn(usize)) -> Result<Findings, String> {
+    pub fn watched(&self, margin: CoverageMargin, told: &dyn Fn(usize)) -> Result<Findings, CertifyError> {
         let wholes = self.wholes();
         let mut findings = Findings::default();
         for (checked, pair) in self.pairs.iter().enumerate() {
@@ -189,13 +189,13 @@ impl<'a> Checker<'a> {
         wholes: &[Vec<DualPrecisionPart<'a>>],
         radii: PairRadii,
         tells: bool,
-    ) -> Result<Findings, String>
+    ) -> Result<Findings, CertifyError>
     where
         Self: 'a,
     {
         let [a, b] = pair.agents;
         let (first, second) = (&self.agents[a].stretches, &self.agents[b].stretches);
-        let named = |problem: String| format!("the pair of places {a} and {b}: {problem}");
+        let named = CertifyError::of(InputPart::Pair([a, b]));
         let pieces = pieces_of(&pair.pieces, [first, second]).map_err(named)?;
         let mut findings = Findings::default();
         for (i, own) in first.iter().enumerate() {
@@ -224,7 +224,7 @@ impl<'a> Checker<'a> {
     ///
     /// # Errors
     /// As [`Checker::check`].
-    pub fn margin(&self) -> Result<Option<(f64, usize)>, String> {
+    pub fn margin(&self) -> Result<Option<(f64, usize)>, CertifyError> {
         self.margin_below(f64::INFINITY)
     }
 
@@ -232,7 +232,7 @@ impl<'a> Checker<'a> {
     ///
     /// # Errors
     /// As [`Checker::check`].
-    pub fn margin_below(&self, known: f64) -> Result<Option<(f64, usize)>, String> {
+    pub fn margin_below(&self, known: f64) -> Result<Option<(f64, usize)>, CertifyError> {
         const STEPS: u32 = 12;
         let wholes = self.wholes();
         let holds = |pair: &RawPair, part: f64| {

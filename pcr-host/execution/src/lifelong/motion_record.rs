@@ -4,6 +4,7 @@ use super::robot::{LifelongRobot, RobotPhase};
 use super::route_element::{STRAIGHT, wrapped};
 use super::route_graph::RouteGraph;
 
+use pcr_certify::error::CertifyError;
 use pcr_certify::motion::{MotionFindings, Mover, meetings};
 use pcr_certify::outline::motion::Driven;
 use pcr_certify::outline::{self, Body, RawBody, RawBodySegment, RawCourse, RawHeading, RawOutline};
@@ -75,7 +76,7 @@ impl RunCertificate {
                 Ok(record)
             })
             .collect();
-        let result = records.and_then(|records| found(&records, [begin, end]));
+        let result = records.and_then(|records| found(&records, [begin, end]).map_err(|wrong| wrong.to_string()));
         window.begin = end;
         self.windows += 1;
         match result {
@@ -138,18 +139,18 @@ enum RecordedMotion {
 }
 
 /// The contacts of these motions.
-fn found(records: &[RecordedMotion], time: [f64; 2]) -> Result<MotionFindings, String> {
+fn found(records: &[RecordedMotion], time: [f64; 2]) -> Result<MotionFindings, CertifyError> {
     let discs = records.iter().map(|record| match record {
         RecordedMotion::Disc(agent) => Some(agent),
         RecordedMotion::Outline(_) => None,
     });
     if let Some(discs) = discs.collect::<Option<Vec<_>>>() {
-        let movers: Result<Vec<Mover>, String> = discs.into_iter().map(|agent| Mover::new(agent, time)).collect();
+        let movers: Result<Vec<Mover>, CertifyError> = discs.into_iter().map(|agent| Mover::new(agent, time)).collect();
         return Ok(meetings(&movers?));
     }
     let bodies: Vec<RawBody> = records.iter().map(RecordedMotion::body).collect();
     let outlines: Vec<Body<'_>> = bodies.iter().map(Body::new).collect::<Result<_, _>>()?;
-    let driven: Result<Vec<Driven<'_>>, String> = outlines.iter().map(|body| Driven::new(body, time)).collect();
+    let driven: Result<Vec<Driven<'_>>, CertifyError> = outlines.iter().map(|body| Driven::new(body, time)).collect();
     Ok(outline::motion::meetings(&driven?))
 }
 

@@ -5,6 +5,7 @@ use crate::bodies::BodyFleet;
 use crate::checker_input::{self, outlines};
 use crate::failure::ComputationError;
 use crate::fleet::{FormatRangeError, HostScalar};
+use pcr_certify::error::{CertifyError, InputPart};
 use pcr_certify::motion::{ContactWitness, MotionFindings, Mover, meetings};
 use pcr_certify::outline::motion::{Driven, meetings as outline_meetings};
 use pcr_certify::outline::{Body, RawBody};
@@ -70,12 +71,12 @@ impl MotionCertificate {
         let found = if !motions.iter().any(outlines::is_body) {
             checker_input::as_given::<S>(&given, &agents)
                 .map_err(|misread| misread.to_string())
-                .and_then(|()| of_discs(&agents, &times))
+                .and_then(|()| of_discs(&agents, &times).map_err(|wrong| wrong.to_string()))
         } else {
             let bodies = outlines::bodies(agents.clone(), &motions);
             outlines::as_given::<S>(&given, &agents, &bodies)
                 .map_err(|misread| misread.to_string())
-                .and_then(|()| of_outlines(&bodies, &times))
+                .and_then(|()| of_outlines(&bodies, &times).map_err(|wrong| wrong.to_string()))
         };
         Ok(match found {
             Ok(found) => Self { outlines: count, ..Self::found(&found) },
@@ -121,17 +122,17 @@ impl MotionCertificate {
 }
 
 /// What the checker finds of discs that are there at these times.
-fn of_discs(agents: &[RawAgent], times: &[[f64; 2]]) -> Result<MotionFindings, String> {
+fn of_discs(agents: &[RawAgent], times: &[[f64; 2]]) -> Result<MotionFindings, CertifyError> {
     let movers = agents
         .iter()
         .zip(times)
-        .map(|(agent, &time)| Mover::new(agent, time).map_err(|problem| format!("agent {}: {problem}", agent.id)));
+        .map(|(agent, &time)| Mover::new(agent, time).map_err(CertifyError::of(InputPart::Agent(agent.id, None))));
     Ok(meetings(&movers.collect::<Result<Vec<_>, _>>()?))
 }
 
 /// What the checker finds of bodies that are there at these times.
-fn of_outlines(bodies: &[RawBody], times: &[[f64; 2]]) -> Result<MotionFindings, String> {
-    let wrong = |id: u64| move |problem: String| format!("agent {id}: {problem}");
+fn of_outlines(bodies: &[RawBody], times: &[[f64; 2]]) -> Result<MotionFindings, CertifyError> {
+    let wrong = |id: u64| CertifyError::of(InputPart::Agent(id, None));
     let placed = bodies.iter().map(|raw| Body::new(raw).map_err(wrong(raw.id)));
     let placed: Vec<Body<'_>> = placed.collect::<Result<_, _>>()?;
     let driven = placed.iter().zip(times).map(|(body, &time)| Driven::new(body, time).map_err(wrong(body.raw.id)));

@@ -1,6 +1,7 @@
 //! Compares the other contents of an answer of `pcr regions` with its tables.
 
 use super::CertificateTable;
+use super::error::{CertifyInputError, RegionDifference};
 use pcr_certify::outline::RawBody;
 use pcr_certify::raw::{RawAgent, RawPair, RawRegion, RawTable};
 use serde::Deserialize;
@@ -36,33 +37,29 @@ struct ReportedPiece {
 }
 
 /// Two bodies with one number are parts of one agent: as many as are told of it.
-pub(super) fn bodies(table: &RawTable, reported: &[ReportedBodies]) -> Result<(), String> {
+pub(super) fn bodies(table: &RawTable, reported: &[ReportedBodies]) -> Result<(), CertifyInputError> {
     let mut told: HashMap<u64, usize> = HashMap::new();
     reported.iter().for_each(|bodies| *told.entry(bodies.id).or_default() += bodies.parts.len());
     let counts = counts(table);
     for (&id, &count) in &counts {
         match told.get(&id) {
-            None if count > 1 => {
-                return Err(format!("{count} bodies have the number {id}, and bodies tell of no agent of this number"));
-            }
-            Some(&there) if there != count => {
-                return Err(format!("{count} bodies have the number {id}, and bodies tell of {there}"));
-            }
+            None if count > 1 => return Err(CertifyInputError::UntoldBodies { id, count }),
+            Some(&told) if told != count => return Err(CertifyInputError::BodyCount { id, count, told }),
             _ => {}
         }
     }
     // Wherever an agent has an outline, less of the regions is compared: the agent has to be there.
     match told.keys().find(|id| !counts.contains_key(id)) {
-        Some(id) => Err(format!("bodies: the certificate has no agent {id}")),
+        Some(&id) => Err(CertifyInputError::BodiesOfNobody(id)),
         None => Ok(()),
     }
 }
 
 /// Checks that two tables are about the same discs on the same paths at the same times, in the second one with margins.
-pub(super) fn enlarged(discs: &RawTable, margins: &RawTable) -> Result<(), String> {
-    let (count, other) = (discs.agents.len(), margins.agents.len());
-    if count != other {
-        return Err(format!("certificate: {count} discs in the first table, and {other} in the second"));
+pub(super) fn enlarged(discs: &RawTable, margins: &RawTable) -> Result<(), CertifyInputError> {
+    let counts = [discs, margins].map(|table| table.agents.len());
+    if counts[0] != counts[1] {
+        return Err(CertifyInputError::DiscCounts(counts));
     }
     for (place, (disc, margin)) in discs.agents.iter().zip(&margins.agents).enumerate() {
         let differs = match () {
@@ -72,13 +69,13 @@ pub(super) fn enlarged(discs: &RawTable, margins: &RawTable) -> Result<(), Strin
             () if margin.radius < disc.radius => "radius, which is smaller with the margin",
             () => continue,
         };
-        return Err(format!("certificate: agents[{place}] of the two tables differ: {differs}"));
+        return Err(CertifyInputError::AgentsDiffer(place, differs));
     }
     Ok(())
 }
 
 /// Checks that two tables have the same outlines but for their radii.
-pub(super) fn same_corners(bodies: &CertificateTable, margins: &CertificateTable) -> Result<(), String> {
+pub(super) fn same_corners(bodies: &CertificateTable, margins: &CertificateTable) -> Result<(), CertifyInputError> {
     let (CertificateTable::Outlines(bodies), CertificateTable::Outlines(margins)) = (bodies, margins) else {
         return Ok(());
     };
@@ -88,16 +85,16 @@ pub(super) fn same_corners(bodies: &CertificateTable, margins: &CertificateTable
             && a.segments.iter().zip(&b.segments).all(|(a, b)| a.heading == b.heading && a.course == b.course)
     };
     match pairs.into_iter().find(|(_, (body, margin))| !same(body, margin)) {
-        Some((place, _)) => Err(format!("certificate: bodies[{place}] of the two tables differ: outline")),
+        Some((place, _)) => Err(CertifyInputError::OutlinesDiffer(place)),
         None => Ok(()),
     }
 }
 
 /// Checks that the requested agent is in the certificate; otherwise nothing would be compared.
-pub(super) fn asked(table: &RawTable, agent: Option<u64>) -> Result<(), String> {
+pub(super) fn asked(table: &RawTable, agent: Option<u64>) -> Result<(), CertifyInputError> {
     match agent {
         Some(asked) if !table.agents.iter().any(|agent| agent.id == asked) => {
-            Err(format!("agent: {asked} is none of the certificate"))
+            Err(CertifyInputError::NoSuchAgent(asked))
         }
         _ => Ok(()),
     }
@@ -129,13 +126,13 @@ pub(super) struct RegionScope<'a> {
 /// Compares the regions in the list of this name with a table.
 ///
 /// # Errors
-/// The first difference, in words.
+/// The first difference.
 pub(super) fn compare(
-    list: &str,
+    list: &'static str,
     told: &[ReportedRegion],
     table: &RawTable,
     asked: RegionScope<'_>,
-) -> Result<(), String> {
+) -> Result<(), CertifyInputError> {
     let mut held: RegionsByPair<ReportedRegion> = BTreeMap::new();
     for pair in &table.pairs {
         for (place, region) in pair.regions.iter().enumerate() {
@@ -164,15 +161,19 @@ pub(super) fn compare(
             continue;
         }
         if own.len() != theirs.len() {
-            let (own, theirs) = (own.len(), theirs.len());
-            return Err(format!("{list}: {own} of agents {i} and {j}, and {theirs} in the certificate"));
+            let (told, held) = (own.len(), theirs.len());
+            return Err(CertifyInputError::RegionCount { list, agents: [i, j], told, held });
         }
         let order = |a: &ReportedRegion, b: &ReportedRegion| a.t[0].total_cmp(&b.t[0]).then(a.l[0].total_cmp(&b.l[0]));
         own.sort_by(|(_, a), (_, b)| order(a, b));
         theirs.sort_by(|(_, a), (_, b)| order(a, b));
         for ((place, own), (_, theirs)) in own.iter().zip(&theirs) {
-            own.same(theirs)
-                .map_err(|why| format!("{list}[{place}], of agents {i} and {j}: {why} in the certificate"))?;
+            own.same(theirs).map_err(|problem| CertifyInputError::Region {
+                list,
+                place: *place,
+                agents: [i, j],
+                problem,
+            })?;
         }
     }
     Ok(())
@@ -182,31 +183,31 @@ pub(super) fn compare(
 /// the ends of a union are ends of some of them. Lengths of outlines are on other paths than those of discs, and are not
 /// compared.
 fn unions(
-    list: &str,
-    [i, j]: [u64; 2],
+    list: &'static str,
+    agents: [u64; 2],
     own: &[(usize, &ReportedRegion)],
     theirs: &[(usize, ReportedRegion)],
     discs: bool,
-) -> Result<(), String> {
+) -> Result<(), CertifyInputError> {
     let within = |[lo, hi]: [f64; 2], [from, to]: [f64; 2]| from <= lo && hi <= to;
     let holds =
         |own: &ReportedRegion, part: &ReportedRegion| within(part.t, own.t) && (!discs || within(part.l, own.l));
     if let Some((_, none)) = theirs.iter().find(|(_, part)| !own.iter().any(|(_, own)| holds(own, part))) {
-        return Err(format!("{list}: none of agents {i} and {j} holds the times {:?} in the certificate", none.t));
+        return Err(CertifyInputError::NotHeld { list, agents, times: none.t });
     }
     let made = |range: &dyn Fn(&ReportedRegion) -> [f64; 2], own: &ReportedRegion| {
         (0..2).all(|end| theirs.iter().any(|(_, part)| range(part)[end] == range(own)[end]))
     };
-    for (k, (place, region)) in own.iter().enumerate() {
-        let wrong = |why: String| format!("{list}[{place}], of agents {i} and {j}: {why}");
+    for (k, &(place, region)) in own.iter().enumerate() {
+        let wrong = |problem| CertifyInputError::Region { list, place, agents, problem };
         if !made(&|told| told.t, region) {
-            return Err(wrong(format!("t is {:?}, which no times in the certificate make", region.t)));
+            return Err(wrong(RegionDifference::Unmade { name: "t", told: region.t, of: "times" }));
         }
         if discs && !made(&|told| told.l, region) {
-            return Err(wrong(format!("l is {:?}, which no lengths in the certificate make", region.l)));
+            return Err(wrong(RegionDifference::Unmade { name: "l", told: region.l, of: "lengths" }));
         }
-        if own[..k].iter().any(|(_, before)| before == region) {
-            return Err(wrong("it is there twice".into()));
+        if own[..k].iter().any(|&(_, before)| before == region) {
+            return Err(wrong(RegionDifference::Twice));
         }
     }
     Ok(())
@@ -219,10 +220,9 @@ fn expected_region(
     (place, region): (usize, &RawRegion),
     times: [[f64; 2]; 2],
     first: usize,
-) -> Result<ReportedRegion, String> {
+) -> Result<ReportedRegion, CertifyInputError> {
     let second = 1 - first;
-    let missing = || format!("the pair of places {} and {} is none", pair.agents[0], pair.agents[1]);
-    let agent = |k: usize| table.agents.get(pair.agents[k]).ok_or_else(missing);
+    let agent = |k: usize| table.agents.get(pair.agents[k]).ok_or(CertifyInputError::NoPair(pair.agents));
     let (own, other) = (agent(first)?, agent(second)?);
     let letter = |agent: &RawAgent, segment: usize| {
         agent.path.segments.get(segment).map_or('?', |segment| if segment.radius.is_some() { 'A' } else { 'S' })
@@ -247,26 +247,30 @@ fn expected_region(
 
 impl ReportedRegion {
     /// Whether a region is told as it is held, or what is not.
-    fn same(&self, held: &Self) -> Result<(), String> {
-        for (name, own, held) in [("t", self.t, held.t), ("l", self.l, held.l)] {
-            if own != held {
-                return Err(format!("{name} is {own:?}, and {held:?}"));
+    fn same(&self, held: &Self) -> Result<(), RegionDifference> {
+        for (name, told, held) in [("t", self.t, held.t), ("l", self.l, held.l)] {
+            if told != held {
+                let [told, held] = [told, held].map(|range| format!("{range:?}"));
+                return Err(RegionDifference::Field { name, told, held });
             }
         }
-        for (name, own, held) in
+        for (name, told, held) in
             [("open_start", self.open_start, held.open_start), ("open_end", self.open_end, held.open_end)]
         {
-            if own != held {
-                return Err(format!("{name} is {own}, and {held}"));
+            if told != held {
+                return Err(RegionDifference::Field { name, told: told.to_string(), held: held.to_string() });
             }
         }
         if self.pieces.len() != held.pieces.len() {
-            return Err(format!("it has {} pieces, and {}", self.pieces.len(), held.pieces.len()));
+            return Err(RegionDifference::PieceCount([self, held].map(|region| region.pieces.len())));
         }
         let (own, held) = (sorted(&self.pieces), sorted(&held.pieces));
         match own.into_iter().zip(held).find(|(own, held)| own != held) {
             None => Ok(()),
-            Some((own, held)) => Err(format!("a piece is {}, and {}", own.describe(), held.describe())),
+            Some((own, held)) => {
+                let (told, held) = (own.describe(), held.describe());
+                Err(RegionDifference::Field { name: "a piece", told, held })
+            }
         }
     }
 }

@@ -156,7 +156,7 @@ fn a_table_of_outlines_is_read_as_it_was_written_and_compared_with_its_regions()
     let refused = |pointer: &str, to: Value| {
         let mut other = value.clone();
         *other.pointer_mut(pointer).expect(pointer) = to;
-        CertifyInput::of_json(&other.to_string()).expect_err(pointer)
+        CertifyInput::of_json(&other.to_string()).expect_err(pointer).to_string()
     };
     let why = refused("/regions/0/t/0", json!(0.5));
     assert!(why.starts_with("regions[0], of agents 1 and 2: t is [0.5, "), "{why}");

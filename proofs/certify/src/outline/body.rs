@@ -9,6 +9,7 @@ use super::data::{CORNERS, RawBody, RawCourse, RawHeading, RawOutline};
 use crate::ball::{Ball, BallReal, Real106, Ternary};
 use crate::box_index::PlainBox;
 use crate::double_double::DoubleDouble;
+use crate::error::{CertifyError, InputPart};
 use crate::path::{LEAST, PreparedSegment, radians, stretches, unit};
 use crate::plane::BallVector;
 use crate::raw::{RawAngle, RawPath, RawSegment};
@@ -22,26 +23,26 @@ const MOST_TURN: f64 = 7.0;
 ///
 /// # Errors
 /// More or fewer corners than allowed, a number out of range, corners that are no convex polygon, counter-clockwise.
-pub fn checked(outline: &RawOutline) -> Result<(), String> {
+pub fn checked(outline: &RawOutline) -> Result<(), CertifyError> {
     let count = outline.corners.len();
     if !(1..=CORNERS).contains(&count) {
-        return Err(format!("an outline of {count} corners; allowed are 1 to {CORNERS}"));
+        return Err(CertifyError::CornerCount { count, most: CORNERS });
     }
     if !outline.corners.iter().flatten().chain([&outline.radius]).all(|number| number.abs() <= MOST) {
-        return Err("a number of the outline is out of range".into());
+        return Err(CertifyError::OutOfRange("a number of the outline"));
     }
     if outline.radius < 0.0 {
-        return Err(format!("an outline with the radius {} m", outline.radius));
+        return Err(CertifyError::OutlineRadius(outline.radius));
     }
     let corner = |k: usize| vector(outline.corners[k % count]);
     let edge = |k: usize| corner(k + 1) - corner(k);
     if count > 1 && !(0..count).all(|k| edge(k).dot(edge(k)).is_positive().is_certain()) {
-        return Err("two neighbouring corners of the outline are the same".into());
+        return Err(CertifyError::SameCorners);
     }
     // Each corner to the left of each edge, but for those of the edge: that is convex, and goes round once.
     let left = |k: usize, other: usize| edge(k).cross(corner(k + other) - corner(k)).is_positive().is_certain();
     if count > 2 && !(0..count).all(|k| (2..count).all(|other| left(k, other))) {
-        return Err("the outline is no convex polygon, counter-clockwise".into());
+        return Err(CertifyError::NotConvex);
     }
     Ok(())
 }
@@ -244,13 +245,13 @@ impl<'a> Body<'a> {
     ///
     /// # Errors
     /// What is wrong with the outline or with the path: a number out of range, lengths that are no sums, a heading that jumps.
-    pub fn new(raw: &'a RawBody) -> Result<Self, String> {
+    pub fn new(raw: &'a RawBody) -> Result<Self, CertifyError> {
         checked(&raw.outline)?;
         if !((0.0..=MOST).contains(&raw.rounding) && (0.0..=1e-3).contains(&raw.jump)) {
-            return Err("a rounding of lengths or angles is out of range".into());
+            return Err(CertifyError::OutOfRange("a rounding of lengths or angles"));
         }
         if !raw.start.iter().all(|number| number.abs() <= 1e15) {
-            return Err("the start is out of range".into());
+            return Err(CertifyError::OutOfRange("the start"));
         }
         let lengths = lengths(raw);
         let along = stretches(&lengths)?;
@@ -262,7 +263,7 @@ impl<'a> Body<'a> {
         let mut before: Option<Real106> = None;
         let mut segments = Vec::with_capacity(along.len());
         for (place, (segment, stretch)) in raw.segments.iter().zip(along).enumerate() {
-            let wrong = |problem: String| format!("segment {place}: {problem}");
+            let wrong = CertifyError::of(InputPart::Segment(place));
             for &turn in &segment.turns {
                 direction = direction + angle(turn).map_err(wrong)?;
             }
@@ -294,7 +295,7 @@ impl<'a> Body<'a> {
                     (Sweep::Turn { centre: at, rate }, vector([0.0, 0.0]))
                 }
                 (RawCourse::Pivot { .. }, RawHeading::Steady(_)) => {
-                    return Err(wrong("a turn in place with a constant heading".into()));
+                    return Err(wrong(CertifyError::SteadyPivot));
                 }
             };
             let placed: Vec<_> = from_reference.into_iter().map(|corner| first + corner).collect();
@@ -365,27 +366,31 @@ fn lengths(raw: &RawBody) -> RawPath {
     }
 }
 
-fn angle(angle: RawAngle) -> Result<Real106, String> {
+fn angle(angle: RawAngle) -> Result<Real106, CertifyError> {
     let (RawAngle::Radians(number) | RawAngle::Turns(number)) = angle;
-    if number.abs() <= 16_777_216.0 { Ok(radians(angle)) } else { Err(format!("an angle of {number} is out of range")) }
+    if number.abs() <= 16_777_216.0 {
+        Ok(radians(angle))
+    } else {
+        Err(CertifyError::ValueOutOfRange("an angle of", number))
+    }
 }
 
 /// Angle for each metre along a course \[rad/m\].
-fn rate(course: RawCourse, length: f64) -> Result<Real106, String> {
+fn rate(course: RawCourse, length: f64) -> Result<Real106, CertifyError> {
     let (RawCourse::Arc { radius: reach } | RawCourse::Pivot { lever: reach }) = course else {
         return Ok(Ball::from(0.0));
     };
     if !(LEAST..=1e15).contains(&reach.abs()) {
-        return Err(format!("a radius or lever of {reach} m is out of range"));
+        return Err(CertifyError::Reach(reach));
     }
     if length > MOST_TURN * reach.abs() {
-        return Err("more than one turn".into());
+        return Err(CertifyError::MoreThanATurn);
     }
     Ok(Ball::from(1.0) / Ball::from(reach))
 }
 
 /// Checks that a heading is another one, but for whole turns and rounding, and returns a bound on how far it is off \[rad\].
-fn goes_on(before: Real106, heading: Real106, jump: f64) -> Result<f64, String> {
+fn goes_on(before: Real106, heading: Real106, jump: f64) -> Result<f64, CertifyError> {
     let apart = heading - before;
     let turns = (apart.to_f64() / DoubleDouble::TURN.to_f64()).round();
     // 2π is right within 2^-106 of itself.
@@ -395,7 +400,7 @@ fn goes_on(before: Real106, heading: Real106, jump: f64) -> Result<f64, String> 
     let allowed = Ball::from(jump + 1e-20);
     match rest.above(allowed) {
         Ternary::No => Ok(upper(rest)),
-        _ => Err(format!("its heading is off by {:e} rad from that before it", rest.to_f64())),
+        _ => Err(CertifyError::HeadingJump(rest.to_f64())),
     }
 }
 

@@ -11,6 +11,7 @@ use super::separation::{Change, above, below};
 use crate::ball::{Ball, Ternary};
 use crate::delays::{Cell, LegPair, Neighbours, Seen, Verdict, half, legs, middle, outside};
 use crate::double_double::DoubleDouble;
+use crate::error::CertifyError;
 
 /// A body on a clock of its own.
 #[derive(Clone, Debug)]
@@ -24,7 +25,7 @@ impl<'a> Traversal<'a> {
     ///
     /// # Errors
     /// A motion that is none, or that goes back or jumps; no motion.
-    pub fn new(body: &'a Body<'a>) -> Result<Self, String> {
+    pub fn new(body: &'a Body<'a>) -> Result<Self, CertifyError> {
         let (driven, duration) = Driven::on_own_clock(body)?;
         Ok(Self { driven, duration })
     }

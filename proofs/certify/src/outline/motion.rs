@@ -12,6 +12,7 @@ use crate::arc_length_motion::BallRamp;
 use crate::ball::{Ball, BallReal, Ternary};
 use crate::box_index::BoxIndex;
 use crate::double_double::DoubleDouble;
+use crate::error::{CertifyError, InputPart};
 use crate::motion::{ContactWitness, MotionFindings};
 use crate::moving_disc::{Mover, MoverLeg};
 use crate::raw::RawAgent;
@@ -65,7 +66,7 @@ impl<'a> Driven<'a> {
     ///
     /// # Errors
     /// A motion that is none, or that goes back or jumps; no motion.
-    pub fn new(body: &'a Body<'a>, time: [f64; 2]) -> Result<Self, String> {
+    pub fn new(body: &'a Body<'a>, time: [f64; 2]) -> Result<Self, CertifyError> {
         let agent = RawAgent {
             id: body.raw.id,
             radius: body.raw.outline.radius,
@@ -79,8 +80,9 @@ impl<'a> Driven<'a> {
     ///
     /// # Errors
     /// As [`Driven::new`].
-    pub(super) fn on_own_clock(body: &'a Body<'a>) -> Result<(Self, f64), String> {
-        let mut travel = body.raw.travel.clone().ok_or_else(|| format!("body {}: no motion", body.raw.id))?;
+    pub(super) fn on_own_clock(body: &'a Body<'a>) -> Result<(Self, f64), CertifyError> {
+        let wrong = CertifyError::of(InputPart::Body(body.raw.id, None));
+        let mut travel = body.raw.travel.clone().ok_or_else(|| wrong(CertifyError::NoMotion))?;
         travel.start = 0.0;
         let duration = travel.phases.last().map_or(0.0, |last| last.time[1]);
         let (radius, path) = (body.raw.outline.radius, body.lengths.clone());

@@ -13,6 +13,7 @@ use crate::ball::Ball;
 use crate::box_index::{BoxIndex, PlainBox};
 use crate::distance_claim::ClaimVerdict;
 use crate::double_double::DoubleDouble;
+use crate::error::{CertifyError, InputPart};
 use crate::pair::{Findings, PieceOnSegments, TableProperty, Witness, pieces_of};
 use crate::path::{LEAST, PreparedSegment};
 use crate::raw::{RawAgent, RawBranch, RawPair, RawPiece};
@@ -46,9 +47,9 @@ impl ProximityIndex {
     ///
     /// # Errors
     /// A body that is none.
-    pub fn of_bodies(bodies: &[RawBody], excess: f64) -> Result<Self, String> {
+    pub fn of_bodies(bodies: &[RawBody], excess: f64) -> Result<Self, CertifyError> {
         let areas = bodies.iter().map(|raw| Ok(area(&Body::new(raw)?, excess)));
-        Ok(Self(BoxIndex::new(areas.collect::<Result<_, String>>()?)))
+        Ok(Self(BoxIndex::new(areas.collect::<Result<_, CertifyError>>()?)))
     }
 }
 
@@ -66,10 +67,10 @@ impl<'a> Checker<'a> {
     ///
     /// # Errors
     /// What is wrong with the table: numbers out of range, a path or an outline that is none, a pair that is missing or there twice.
-    pub fn new(table: &'a RawOutlineTable) -> Result<Self, String> {
+    pub fn new(table: &'a RawOutlineTable) -> Result<Self, CertifyError> {
         let (mut bodies, mut lines) = (Vec::new(), Vec::new());
         for (place, raw) in table.bodies.iter().enumerate() {
-            let wrong = |problem: String| format!("body {} (place {place}): {problem}", raw.id);
+            let wrong = CertifyError::of(InputPart::Body(raw.id, Some(place)));
             let body = Body::new(raw).map_err(wrong)?;
             let agent = RawAgent {
                 id: raw.id,
@@ -86,29 +87,29 @@ impl<'a> Checker<'a> {
         Ok(checker)
     }
 
-    fn all_pairs_are_there(&self, apart: Option<f64>) -> Result<(), String> {
+    fn all_pairs_are_there(&self, apart: Option<f64>) -> Result<(), CertifyError> {
         let count = self.bodies.len();
         let id = |place: usize| self.bodies[place].raw.id;
         let mut there = HashSet::with_capacity(self.pairs.len());
         for pair in self.pairs {
             let [a, b] = pair.bodies;
             if a == b || a >= count || b >= count || id(a) == id(b) || !there.insert([a.min(b), a.max(b)]) {
-                return Err(format!("the pair of places {a} and {b} is none, or there twice"));
+                return Err(CertifyError::NoPair([a, b]));
             }
             if !(LEAST..1e15).contains(&pair.excess) {
-                return Err(format!("the excess of places {a} and {b} is out of range"));
+                return Err(CertifyError::Excess([a, b]));
             }
         }
         let is_missing = |a: usize, b: usize| id(a) != id(b) && !there.contains(&[a, b]);
         let missing = match apart {
             Some(excess) if (LEAST..1e15).contains(&excess) => {
                 let near = BoxIndex::new(self.bodies.iter().map(|body| area(body, excess)).collect());
-                (0..count).find_map(|a| near.after(a).into_iter().find(|&b| is_missing(a, b)).map(|b| (a, b)))
+                (0..count).find_map(|a| near.after(a).into_iter().find(|&b| is_missing(a, b)).map(|b| [a, b]))
             }
-            Some(_) => return Err("the excess of those that are left out is out of range".into()),
-            None => (0..count).find_map(|a| (a + 1..count).find(|&b| is_missing(a, b)).map(|b| (a, b))),
+            Some(_) => return Err(CertifyError::OutOfRange("the excess of those that are left out")),
+            None => (0..count).find_map(|a| (a + 1..count).find(|&b| is_missing(a, b)).map(|b| [a, b])),
         };
-        missing.map_or(Ok(()), |(a, b)| Err(format!("the pair of places {a} and {b} is missing")))
+        missing.map_or(Ok(()), |pair| Err(CertifyError::MissingPair(pair)))
     }
 
     /// What a corner may be off by the rounding of lengths and times \[m\].
@@ -120,7 +121,7 @@ impl<'a> Checker<'a> {
     ///
     /// # Errors
     /// A piece or a region that is none.
-    pub fn check(&self, margin: CoverageMargin) -> Result<Report, String> {
+    pub fn check(&self, margin: CoverageMargin) -> Result<Report, CertifyError> {
         self.watched(margin, &|_| {})
     }
 
@@ -128,7 +129,7 @@ impl<'a> Checker<'a> {
     ///
     /// # Errors
     /// A piece or a region that is none.
-    pub fn watched(&self, margin: CoverageMargin, told: &dyn Fn(usize)) -> Result<Report, String> {
+    pub fn watched(&self, margin: CoverageMargin, told: &dyn Fn(usize)) -> Result<Report, CertifyError> {
         let mut report = Report::default();
         for (checked, pair) in self.pairs.iter().enumerate() {
             told(checked);
@@ -142,7 +143,7 @@ impl<'a> Checker<'a> {
     ///
     /// # Errors
     /// A piece that is none.
-    pub fn margin(&self) -> Result<Option<f64>, String> {
+    pub fn margin(&self) -> Result<Option<f64>, CertifyError> {
         const STEPS: u32 = 12;
         let mut least: Option<f64> = None;
         for pair in self.pairs.iter().filter(|pair| !pair.pieces.is_empty()) {
@@ -180,15 +181,15 @@ impl<'a> Checker<'a> {
     }
 
     /// The pieces of a pair as lengths along their segments, with their ranks.
-    fn pieces(&self, pair: &RawOutlinePair) -> Result<Vec<(PieceOnSegments, [u8; 2])>, String> {
+    fn pieces(&self, pair: &RawOutlinePair) -> Result<Vec<(PieceOnSegments, [u8; 2])>, CertifyError> {
         let [a, b] = pair.bodies;
-        let named = |problem: String| format!("the pair of places {a} and {b}: {problem}");
+        let named = CertifyError::of(InputPart::Pair([a, b]));
         let stretches: [&[PreparedSegment]; 2] = [&self.lines[a].0, &self.lines[b].0];
         let mut pieces = Vec::with_capacity(pair.pieces.len());
         for piece in &pair.pieces {
             let [k, of] = piece.rank;
             if k >= of {
-                return Err(named(format!("a piece that stands for the interval {k} of {of}")));
+                return Err(named(CertifyError::PieceRank([k, of])));
             }
             let placed = pieces_of(&[unranked(piece)], stretches).map_err(named)?;
             pieces.extend(placed.into_iter().map(|one| (one, piece.rank)));
@@ -196,7 +197,7 @@ impl<'a> Checker<'a> {
         Ok(pieces)
     }
 
-    fn pair(&self, pair: &RawOutlinePair, margin: CoverageMargin, report: &mut Report) -> Result<(), String> {
+    fn pair(&self, pair: &RawOutlinePair, margin: CoverageMargin, report: &mut Report) -> Result<(), CertifyError> {
         let [a, b] = pair.bodies;
         let bodies = [&self.bodies[a], &self.bodies[b]];
         let lines = [&self.lines[a], &self.lines[b]];
@@ -245,7 +246,7 @@ impl<'a> Checker<'a> {
         let agents = lines.map(|(_, agent)| agent);
         let placed: Vec<PieceOnSegments> = pieces.iter().map(|(piece, _)| *piece).collect();
         regions::check(agents, stretches, &pair_of_discs, &placed, &outlines, &mut report.findings)
-            .map_err(|problem| format!("the pair of places {a} and {b}: {problem}"))
+            .map_err(CertifyError::of(InputPart::Pair([a, b])))
     }
 }
 

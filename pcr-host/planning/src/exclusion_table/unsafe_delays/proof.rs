@@ -9,6 +9,7 @@ use crate::exclusion_table::area_pair_search::{SyncProgressFn, in_stretches};
 use crate::memory_budget::MemoryDemand;
 use crate::parallel;
 use pcr_certify::delays::{Neighbours, Traversal, Verdict};
+use pcr_certify::error::CertifyError;
 use pcr_certify::outline::Body as OutlineBody;
 use pcr_certify::outline::delays::{Traversal as OutlineTraversal, neighbours};
 use pcr_formats::import::{ElementId, ImportError};
@@ -149,7 +150,7 @@ impl UnsafeDelayModel {
         let of = self.bodies.get(..self.ways.len()).unwrap_or_default();
         let way_of = |body: usize| of.partition_point(|bodies| bodies.end <= body);
         let refused =
-            |body: usize, problem: String| ImportError::new(format!("{}: {problem}", self.name(way_of(body))));
+            |body: usize, problem: CertifyError| ImportError::new(format!("{}: {problem}", self.name(way_of(body))));
         let count = of.last().map_or(0, |last| last.end);
         let placed = parallel::map_parallel(0..count, &|body| {
             OutlineBody::new(&raw[body]).map_err(|problem| refused(body, problem))
@@ -195,7 +196,7 @@ impl UnsafeDelayModel {
     }
 
     fn traversals(&self) -> Result<Traversals, ImportError> {
-        let refused = |way: usize, problem: String| ImportError::new(format!("{}: {problem}", self.name(way)));
+        let refused = |way: usize, problem: CertifyError| ImportError::new(format!("{}: {problem}", self.name(way)));
         let mut all = Traversals { lines: Vec::new(), ways: Vec::new(), line: Vec::new(), motions: Vec::new() };
         for (way, straight) in self.straight.iter().enumerate() {
             all.line.push(straight.as_ref().map(|_| all.lines.len()));
@@ -208,7 +209,7 @@ impl UnsafeDelayModel {
         let motions = self.fleet.motions();
         if !motions.is_empty() {
             let traversals = parallel::map_parallel(0..self.ways.len(), &|way| {
-                let Some(motion) = motions.get(way) else { return Err(refused(way, "no motion".into())) };
+                let Some(motion) = motions.get(way) else { return Err(refused(way, CertifyError::NoMotion)) };
                 let (heading, turns) = self.fleet.headings(way);
                 let agent = checker_input::agent(way as u64, motion, heading, turns);
                 Traversal::new(&agent).map_err(|problem| refused(way, problem))

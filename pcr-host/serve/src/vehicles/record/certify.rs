@@ -3,8 +3,9 @@
 use super::RecordVehicle;
 use super::outline_body::{bodies, unwound};
 use super::read::{RecordContents, read};
+use pcr_certify::error::CertifyError;
 use pcr_certify::motion::{MotionFindings, Mover, meetings};
-use pcr_certify::outline::{self, Body, motion::Driven};
+use pcr_certify::outline::{self, Body, RawBody, motion::Driven};
 use pcr_certify::raw::{RawAgent, RawAngle, RawMotion, RawPath, RawPhase, RawSegment};
 use serde::Serialize;
 use std::io::{self, BufRead};
@@ -114,12 +115,17 @@ fn met(
         let movers = all()
             .zip(discs)
             .map(|((id, ((_, part), &far)), radius)| Mover::new(&agent(id as u64, radius, part, far), window));
-        return Ok(meetings(&movers.collect::<Result<Vec<_>, _>>()?));
+        let movers = movers.collect::<Result<Vec<_>, _>>().map_err(|wrong| wrong.to_string())?;
+        return Ok(meetings(&movers));
     }
     let mut raw = Vec::new();
     for (id, ((vehicle, part), &far)) in all() {
         raw.extend(bodies(id as u64, vehicle, part, far)?);
     }
+    outlines_met(&raw, window).map_err(|wrong| wrong.to_string())
+}
+
+fn outlines_met(raw: &[RawBody], window: [f64; 2]) -> Result<MotionFindings, CertifyError> {
     let placed = raw.iter().map(Body::new).collect::<Result<Vec<_>, _>>()?;
     let driven = placed.iter().map(|body| Driven::new(body, window)).collect::<Result<Vec<_>, _>>()?;
     Ok(outline::motion::meetings(&driven))

@@ -55,7 +55,7 @@ fn outside_of_the_exact_delays_trucks_are_free() {
 fn without_a_motion_there_is_no_traversal() {
     let raw = RawBody { travel: None, ..truck(1, [0.0; 2], 0.0) };
     let body = Body::new(&raw).unwrap();
-    assert_eq!(Traversal::new(&body).unwrap_err(), "body 1: no motion");
+    assert_eq!(Traversal::new(&body).unwrap_err().to_string(), "body 1: no motion");
 }
 
 #[test]
