@@ -8,6 +8,7 @@ use convex_parts::convex_parts;
 use serde::de::{Deserializer, Error};
 use serde::ser::{SerializeStruct, Serializer};
 use serde::{Deserialize, Serialize};
+use std::fmt;
 
 /// Corners of a polygon at most.
 const CORNERS: usize = 256;
@@ -24,14 +25,43 @@ pub struct Footprint {
     parts: Vec<Vec<[f64; 2]>>,
 }
 
+/// Why a polygon is no footprint.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum FootprintError {
+    /// It has so many corners: fewer than three, or too many.
+    CornerCount(usize),
+    /// All corners are at fewer than three places.
+    NoArea,
+    /// Two sides touch or cross, each from a corner to a corner, from 1.
+    SidesMeet([[usize; 2]; 2]),
+    /// Its sides are so near to one another that it is not cut into convex parts.
+    NoParts,
+}
+
+impl fmt::Display for FootprintError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::CornerCount(count) => write!(f, "{count} corners; allowed are 3 to {CORNERS}"),
+            Self::NoArea => f.write_str("it has no area: its corners are at fewer than three places"),
+            Self::SidesMeet([[a, b], [c, d]]) => write!(
+                f,
+                "the side from corner {a} to {b} touches or crosses that from {c} to {d}; allowed is a simple polygon with an area"
+            ),
+            Self::NoParts => f.write_str("its sides are too near to one another to cut it into convex parts"),
+        }
+    }
+}
+
+impl std::error::Error for FootprintError {}
+
 impl Footprint {
     /// Returns the footprint with these corners, ahead and left of the reference point \[m\], in either direction of rotation.
     ///
     /// # Errors
     /// What is wrong: fewer than three corners or more than 256, sides that touch or cross, or no area.
-    pub fn new(polygon: Vec<[f64; 2]>) -> Result<Self, String> {
+    pub fn new(polygon: Vec<[f64; 2]>) -> Result<Self, FootprintError> {
         if !(3..=CORNERS).contains(&polygon.len()) {
-            return Err(format!("{} corners; allowed are 3 to {CORNERS}", polygon.len()));
+            return Err(FootprintError::CornerCount(polygon.len()));
         }
         if let Some(fault) = simple_polygon::fault(&polygon) {
             return Err(fault);
@@ -40,7 +70,7 @@ impl Footprint {
         // A simple polygon whose corners all lie on its convex hull has them in the same order.
         let is_convex = polygon.iter().all(|&corner| depth(&hull, corner) <= rounding(&hull));
         let parts = convex_parts(if is_convex { &hull } else { &polygon });
-        let parts = parts.ok_or("its sides are too near to one another to cut it into convex parts")?;
+        let parts = parts.ok_or(FootprintError::NoParts)?;
         Ok(Self { polygon, growth: 0.0, parts })
     }
 
@@ -318,12 +348,12 @@ mod tests {
 
     #[test]
     fn what_is_refused() {
-        assert!(Footprint::new(vec![[0.0, 0.0], [1.0, 0.0]]).unwrap_err().contains("corners"));
-        assert!(Footprint::new(vec![[0.0, 0.0], [1.0, 0.0], [2.0, 0.0]]).unwrap_err().contains("touches"));
+        assert!(Footprint::new(vec![[0.0, 0.0], [1.0, 0.0]]).unwrap_err().to_string().contains("corners"));
+        assert!(Footprint::new(vec![[0.0, 0.0], [1.0, 0.0], [2.0, 0.0]]).unwrap_err().to_string().contains("touches"));
         // A fork that is a line there and back has no area.
         let fork = [[-0.5, -0.3], [0.5, -0.3], [0.5, 0.2], [1.5, 0.2], [0.5, 0.2], [0.5, 0.3], [-0.5, 0.3]];
-        assert!(Footprint::new(fork.to_vec()).unwrap_err().contains("from corner 2 to 3"));
+        assert!(Footprint::new(fork.to_vec()).unwrap_err().to_string().contains("from corner 2 to 3"));
         let [a, b] = [9e9, 9_000_000_000.000_004];
-        assert!(Footprint::new(vec![[a, a], [b, a], [b, b], [a, b]]).unwrap_err().contains("no area"));
+        assert!(Footprint::new(vec![[a, a], [b, a], [b, b], [a, b]]).unwrap_err().to_string().contains("no area"));
     }
 }

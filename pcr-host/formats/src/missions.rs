@@ -245,7 +245,7 @@ impl FleetMissions {
             (None, Some(_)) => return Err(record.wrong("width", "a width needs a length".into())),
         };
         if let Some((field, corners)) = rectangle.or(polygon.map(|corners| ("footprint", corners))) {
-            let footprint = Footprint::new(corners).map_err(|problem| record.wrong(field, problem))?;
+            let footprint = Footprint::new(corners).map_err(|problem| record.wrong(field, problem.to_string()))?;
             (traits.radius, traits.footprint) = (footprint.circumscribed_radius(), Some(footprint));
         }
         traits.margin = record.number("margin", 0.0, LARGEST)?.unwrap_or(traits.margin);

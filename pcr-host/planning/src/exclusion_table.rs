@@ -26,7 +26,7 @@ pub use contact::can_touch;
 pub use edge_traversals::EdgeTraversal;
 pub use edge_traversals::{EdgeTraversals, SweptShape, corridor, is_turn, placed_pieces, swept};
 pub use incremental::{ExclusionChange, IncrementalExclusions};
-pub use index::{ExclusionIndex, ExclusionIndexError, ExclusionPartner, write_index};
+pub use index::{ExclusionIndex, ExclusionIndexError, ExclusionPartner, IndexDamage, write_index};
 pub use origin::origin;
 use pcr_formats::footprint::Footprint;
 use pcr_formats::import::{self, ElementId, ImportError, ImportedLayout, Layout, LayoutEdge};

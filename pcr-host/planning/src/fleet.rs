@@ -1,6 +1,7 @@
 //! Converts scenarios to motions and tables, in any number format of the tool.
 
 mod fixed;
+mod format_range_error;
 mod hull;
 #[cfg(feature = "micromath")]
 mod micro_format;
@@ -12,6 +13,8 @@ mod tests;
 mod turns;
 
 use crate::memory_budget;
+use format_range_error::{FieldFault, derived};
+pub use format_range_error::{FormatRangeError, RangeProblem};
 pub use hull::{ConvexBody, HullOutline};
 use pcr_certify::raw::RawAngle;
 use pcr_core::{
@@ -19,9 +22,8 @@ use pcr_core::{
     Piece, Point, Pose, PrecedenceTable, Profile, ProfileRef, Radians, RegionPrecedence, Scalar, Segment, TurnSide,
 };
 use pcr_formats::scenario::TURN;
-use pcr_formats::scenario::{Agent, MotionSpec, PathSegment, Scenario, figure};
+use pcr_formats::scenario::{Agent, MotionSpec, PathSegment, Scenario};
 use std::f64::consts::{PI, TAU};
-use std::fmt;
 
 /// A table on the heap.
 pub type HostEcm<S> = Ecm<S, Vec<EcmEntry>, Vec<Piece<S>>>;
@@ -102,66 +104,22 @@ impl HostScalar for f32 {
     }
 }
 
-/// The reason why an agent of a scenario does not fit a number format: agent, segment, field, value, and the allowed range.
-#[derive(Clone, Debug, PartialEq)]
-pub struct FormatRangeError {
-    agent: String,
-    part: Option<(&'static str, usize)>,
-    format: &'static str,
-    problem: String,
-}
-
-impl fmt::Display for FormatRangeError {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(f, "agent {}", self.agent)?;
-        if let Some((part, index)) = self.part {
-            write!(f, ", {part} {}", index + 1)?;
-        }
-        write!(f, ", {} ({})", self.problem, self.format)
-    }
-}
-
-impl std::error::Error for FormatRangeError {}
-
 /// A field as a number of the format; an overflow, or a value that becomes 0, is refused.
-fn number<S: HostScalar>(field: &str, value: f64) -> Result<S, String> {
+fn number<S: HostScalar>(field: &'static str, value: f64) -> Result<S, RangeProblem> {
     let number = S::from_f64(value);
     // Not compared by magnitude, because the least number of a fixed-point format has none.
     if !number.is_finite() || !(-S::LIMIT..=S::LIMIT).contains(&number) {
-        let (value, limit) = (figure(value), S::LIMIT.to_f64());
-        Err(format!("{field}: {value} is out of range; allowed is up to {limit:e} in magnitude"))
+        Err(RangeProblem::TooLarge { field, value, limit: S::LIMIT.to_f64() })
     } else if number == S::ZERO && value != 0.0 {
-        Err(format!("{field}: {} is out of range; it is so small that it becomes 0", figure(value)))
+        Err(RangeProblem::BecomesZero { field, value })
     } else {
         Ok(number)
     }
 }
 
 /// A field as an angle of the format.
-fn angle<S: HostScalar>(field: &str, radians: f64) -> Result<S::Angle, String> {
-    S::angle(radians).ok_or_else(|| {
-        let [radians, limit] = [radians, ANGLE_LIMIT].map(figure);
-        format!("{field}: {radians} is out of range; allowed is up to {limit} in magnitude")
-    })
-}
-
-/// The message for a value refused by the core, which follows from several fields.
-fn derived<S: HostScalar>(reason: InvalidInput) -> String {
-    let limit = S::LIMIT.to_f64();
-    match reason {
-        InvalidInput::OutOfRange(what @ "heading") => {
-            let limit = figure(S::HEADING_LIMIT);
-            format!("{what} is out of range; allowed is up to {limit} in magnitude, with all turns of the path")
-        }
-        InvalidInput::OutOfRange(what) => format!("{what} is out of range; allowed is up to {limit:e} in magnitude"),
-        InvalidInput::TooSmall(what) => {
-            let least = S::LEAST.to_f64();
-            // Printed with the digits of `f32` if `f32` can hold it, because most formats have that limit.
-            let least = if least as f32 > 0.0 { format!("{:e}", least as f32) } else { format!("{least:e}") };
-            format!("{what} is out of range; the least is {least}")
-        }
-        reason => reason.to_string(),
-    }
+fn angle<S: HostScalar>(field: &'static str, radians: f64) -> Result<S::Angle, RangeProblem> {
+    S::angle(radians).ok_or(RangeProblem::Angle { field, radians, limit: ANGLE_LIMIT })
 }
 
 /// A warning if rounding to the format moves some agents by more than 1 mm at some time. `None` for `f64`, the format of the
@@ -211,10 +169,9 @@ impl<S: HostScalar> Fleet<S> {
     /// [`FormatRangeError`] if a value does not fit the number format.
     pub fn new(scenario: &Scenario) -> Result<Self, FormatRangeError> {
         let agents = scenario.agents.iter().map(|agent| {
-            let refused =
-                |(part, problem)| FormatRangeError { agent: agent.display_name(), part, format: S::NAME, problem };
-            let disc = number("radius", agent.circumscribed_radius()).map_err(|problem| refused(of_agent(problem)))?;
-            MotionParts::new(agent, Shape::Disc(disc)).map_err(refused)
+            let disc = number("radius", agent.circumscribed_radius()).map_err(FieldFault::from);
+            disc.and_then(|disc| MotionParts::new(agent, Shape::Disc(disc)))
+                .map_err(|fault| fault.of::<S>(agent.display_name()))
         });
         Ok(Self { agents: agents.collect::<Result<_, _>>()? })
     }
@@ -227,12 +184,8 @@ impl<S: HostScalar> Fleet<S> {
     pub fn of_bodies(scenario: &Scenario) -> Result<Self, FormatRangeError> {
         let mut fleet = Self { agents: Vec::with_capacity(scenario.agents.len()) };
         for agent in &scenario.agents {
-            let hull = ConvexBody::hull_of(agent).map_err(|problem| FormatRangeError {
-                agent: agent.display_name(),
-                part: None,
-                format: S::NAME,
-                problem: format!("convex hull of its outlines: {problem}"),
-            })?;
+            let hull = ConvexBody::hull_of(agent)
+                .map_err(|problem| FieldFault::from(problem).of::<S>(agent.display_name()))?;
             fleet.append(match hull {
                 Some(hull) => Self::body(&Agent { footprint: Some(hull), loads: Vec::new(), ..agent.clone() })?,
                 // Of a disc a turn in place sweeps nothing.
@@ -248,10 +201,8 @@ impl<S: HostScalar> Fleet<S> {
     /// # Errors
     /// As [`Fleet::new`].
     pub(crate) fn body(agent: &Agent) -> Result<Self, FormatRangeError> {
-        let refused =
-            |(part, problem)| FormatRangeError { agent: agent.display_name(), part, format: S::NAME, problem };
-        let parts = MotionParts::of_body(agent);
-        Ok(Self { agents: vec![parts.map_err(refused)?] })
+        let parts = MotionParts::of_body(agent).map_err(|fault| fault.of::<S>(agent.display_name()))?;
+        Ok(Self { agents: vec![parts] })
     }
 
     /// The motions, in the order of the scenario.
@@ -298,14 +249,6 @@ pub(crate) struct LongTurn<S> {
 /// Index of the segment before which an agent turns in place, and the angle.
 pub(crate) type TurnAt<S> = (usize, <S as Scalar>::Angle);
 
-/// Index of a segment or piece of a profile, if the fault is there; and the problem in words.
-type FieldFault = (Option<(&'static str, usize)>, String);
-
-/// A fault of the agent as a whole.
-fn of_agent(problem: String) -> FieldFault {
-    (None, problem)
-}
-
 impl<S: HostScalar> MotionParts<S> {
     fn new(agent: &Agent, shape: Shape<S>) -> Result<Self, FieldFault> {
         let path = place_path(agent, None)?;
@@ -323,15 +266,15 @@ impl<S: HostScalar> MotionParts<S> {
             Some(turning) => (Some(&turning.levers[..]), &turning.motion, turning.off),
         };
         let shape = match &agent.footprint {
-            None => Shape::Disc(number("radius", agent.circumscribed_radius() + off).map_err(of_agent)?),
-            Some(footprint) => Shape::Outline(Box::new(outline::of(&footprint.inflated(off)).map_err(of_agent)?)),
+            None => Shape::Disc(number("radius", agent.circumscribed_radius() + off)?),
+            Some(footprint) => Shape::Outline(Box::new(outline::of(&footprint.inflated(off))?)),
         };
         Self::along(agent, place_path(agent, levers)?, motion, shape)
     }
 
     fn along(agent: &Agent, path: PlacedPath<S>, motion: &MotionSpec, shape: Shape<S>) -> Result<Self, FieldFault> {
         let PlacedPath { segments, sources, turns } = path;
-        let path = PathRef::new(&segments).map_err(|reason| of_agent(derived::<S>(reason)))?;
+        let path = PathRef::new(&segments).map_err(derived::<S>)?;
         let phases = phases(agent, motion, path.length())?;
         let turned = segments.iter().filter_map(|segment| match segment.curve() {
             Curve::Pivot { lever, .. } => {
@@ -340,13 +283,13 @@ impl<S: HostScalar> MotionParts<S> {
             _ => None,
         });
         let turned = turned.collect();
-        let start = number("t_start", agent.t_start).map_err(of_agent)?;
-        let margin = number("margin", agent.margin).map_err(of_agent)?;
-        let heading = angle::<S>("start.heading", agent.start[2]).map_err(of_agent)?;
+        let start = number("t_start", agent.t_start)?;
+        let margin = number("margin", agent.margin)?;
+        let heading = angle::<S>("start.heading", agent.start[2])?;
         let parts = Self { segments, sources, heading, turns, phases, shape, margin, start, turned };
         match parts.motion() {
             Ok(_) => Ok(parts),
-            Err(reason) => Err(of_agent(derived::<S>(reason))),
+            Err(reason) => Err(derived::<S>(reason).into()),
         }
     }
 
@@ -370,9 +313,9 @@ struct PlacedPath<S: Scalar> {
 /// The path of an agent. With `levers` \[m\], turns in place have a length where theirs is not 0.
 fn place_path<S: HostScalar>(agent: &Agent, levers: Option<&[f64]>) -> Result<PlacedPath<S>, FieldFault> {
     let [x, y, heading] = agent.start;
-    let position = Point::new(number("start.x", x).map_err(of_agent)?, number("start.y", y).map_err(of_agent)?);
-    let pose = Pose { position, heading: angle::<S>("start.heading", heading).map_err(of_agent)? };
-    let mut origin = Segment::standing(pose).map_err(|reason| of_agent(derived::<S>(reason)))?;
+    let position = Point::new(number("start.x", x)?, number("start.y", y)?);
+    let pose = Pose { position, heading: angle::<S>("start.heading", heading)? };
+    let mut origin = Segment::standing(pose).map_err(derived::<S>)?;
     // Fleets are large, and paths are short: a list that grows would have room for four.
     let count = agent.path.len();
     let mut segments: Vec<Segment<S>> = Vec::with_capacity(count.max(1));
@@ -383,9 +326,9 @@ fn place_path<S: HostScalar>(agent: &Agent, levers: Option<&[f64]>) -> Result<Pl
         if *segment == PathSegment::Cusp {
             // There and back by the same number, so that the heading of the body is the same one.
             let half = if facing == Some(-PI) { -PI } else { PI };
-            let by = angle::<S>("gear", half).map_err(of_agent)?;
+            let by = angle::<S>("gear", half)?;
             let last = segments.last_mut().unwrap_or(&mut origin);
-            *last = last.turned(by).map_err(|reason| of_agent(derived::<S>(reason)))?;
+            *last = last.turned(by).map_err(derived::<S>)?;
             turns.push((segments.len(), by));
             (facing, cusps) = (Some(if half > 0.0 { -half } else { 0.0 }), cusps + 1);
             continue;
@@ -395,7 +338,7 @@ fn place_path<S: HostScalar>(agent: &Agent, levers: Option<&[f64]>) -> Result<Pl
         }
         // In the file.
         let source = source - cusps;
-        let at = |problem| (Some(("segment", source)), problem);
+        let at = |problem| FieldFault { part: Some(("segment", source)), problem };
         let lever = levers.and_then(|levers| levers.get(source + cusps).copied()).filter(|lever| *lever > 0.0);
         let turn = match *segment {
             PathSegment::Arc { radius: TURN, sweep } if levers.is_some() => Some(sweep),
@@ -432,7 +375,7 @@ fn place_path<S: HostScalar>(agent: &Agent, levers: Option<&[f64]>) -> Result<Pl
                 Some(facing) => next.facing(S::angle(facing).ok_or(InvalidInput::NonFinite("gear"))?),
                 None => Ok(next),
             });
-            let next = next.map_err(|reason| at(format!("at its end: {}", derived::<S>(reason))))?;
+            let next = next.map_err(|reason| at(RangeProblem::AtItsEnd(Box::new(derived::<S>(reason)))))?;
             if next.length() > S::ZERO {
                 segments.push(next);
                 sources.push(source);
@@ -463,22 +406,18 @@ fn phases<S: HostScalar>(agent: &Agent, motion: &MotionSpec, length: S) -> Resul
     let duration = agent.duration();
     // The division of the core saturates, so motions that take too long are detected here.
     if S::from_f64(duration) >= S::LIMIT {
-        let limit = S::LIMIT.to_f64();
-        let duration = figure(duration);
-        return Err(of_agent(format!("the motion takes {duration} s; allowed is below {limit:e} s")));
+        return Err(RangeProblem::Duration { duration, limit: S::LIMIT.to_f64() }.into());
     }
     match motion {
         MotionSpec::RestToRest { v_max, a_max } => {
-            let speed = number("v_max", *v_max).map_err(of_agent)?;
-            let acceleration = number("a_max", *a_max).map_err(of_agent)?;
+            let speed = number("v_max", *v_max)?;
+            let acceleration = number("a_max", *a_max)?;
             let profile = Profile::rest_to_rest(length, Limits { speed, acceleration });
-            let profile = profile.map_err(|reason| of_agent(derived::<S>(reason)))?;
+            let profile = profile.map_err(derived::<S>)?;
             Ok(profile.as_profile().phases().to_vec())
         }
-        MotionSpec::Profile { v0, pieces } => speed::phases(*v0, pieces, length).map_err(|(piece, problem)| {
-            let part = piece.map(|piece| ("profile piece", piece));
-            (part, problem)
-        }),
+        MotionSpec::Profile { v0, pieces } => speed::phases(*v0, pieces, length)
+            .map_err(|(piece, problem)| FieldFault { part: piece.map(|piece| ("profile piece", piece)), problem }),
     }
 }
 

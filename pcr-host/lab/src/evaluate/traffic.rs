@@ -4,7 +4,7 @@ use super::{DocumentSection, EvaluationError, PaperFleets, Thoroughness, picture
 use pcr_comparing::compare::stopwatch::{Stopwatch, steady};
 use pcr_drawing::{LayoutLevelView, overview};
 use pcr_execution::traffic::{TrafficOptions, TrafficReport, schedule};
-use pcr_formats::footprint::Footprint;
+use pcr_formats::footprint::{Footprint, FootprintError};
 use pcr_formats::import::ImportedLayout;
 use pcr_planning::bodies::BodyFleet;
 use pcr_planning::check::CheckReport;
@@ -63,7 +63,7 @@ pub(super) fn section(fleets: &PaperFleets, extent: Thoroughness) -> Result<Docu
 }
 
 /// The same layout with vehicles that are no discs.
-fn with_outline(disc: &ImportedLayout) -> Result<ImportedLayout, String> {
+fn with_outline(disc: &ImportedLayout) -> Result<ImportedLayout, FootprintError> {
     let [ahead, left] = SIZE.map(|side| 0.5 * side);
     let footprint = Footprint::new(vec![[ahead, left], [-ahead, left], [-ahead, -left], [ahead, -left]])?;
     let mut outlined = disc.clone();

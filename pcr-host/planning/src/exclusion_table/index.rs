@@ -39,7 +39,64 @@ pub enum ExclusionIndexError {
     /// The locks cannot be computed.
     Import(ImportError),
     /// The file is damaged.
-    Damaged(String),
+    Damaged(IndexDamage),
+}
+
+/// What is wrong with a file that is to have a table of locks.
+#[derive(Clone, Debug, PartialEq)]
+pub enum IndexDamage {
+    /// It does not begin like one.
+    Magic,
+    /// It has another version.
+    Version(u32),
+    /// The checksum of its header is wrong.
+    HeaderChecksum,
+    /// It is longer or shorter than its header says.
+    Size,
+    /// The checksum of its names is wrong.
+    NamesChecksum,
+    /// Its names are shorter than its numbers say.
+    NamesTooShort,
+    /// Its tracks do not follow one another.
+    TrackOrder,
+    /// An edge is not on its track.
+    EdgeOffTrack,
+    /// The length of an edge is no length.
+    EdgeLength,
+    /// Its tracks have not all of its locks and edges.
+    TrackTotals,
+    /// Its names do not follow one another.
+    NameOrder,
+    /// Its names are longer or shorter than they say.
+    NamesLength,
+    /// The locks of this edge or node are not in it.
+    LocksMissing(String),
+    /// The checksum of the locks of this edge or node is wrong.
+    LocksChecksum(String),
+    /// A lock of this edge or node is none.
+    NoLock(String),
+}
+
+impl std::fmt::Display for IndexDamage {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        match self {
+            Self::Magic => f.write_str("it does not begin like one"),
+            Self::Version(version) => write!(f, "version {version}; known is {VERSION}"),
+            Self::HeaderChecksum => f.write_str("the checksum of its header is wrong"),
+            Self::Size => f.write_str("it is longer or shorter than its header says"),
+            Self::NamesChecksum => f.write_str("the checksum of its names is wrong"),
+            Self::NamesTooShort => f.write_str("its names are shorter than its numbers say"),
+            Self::TrackOrder => f.write_str("its tracks do not follow one another"),
+            Self::EdgeOffTrack => f.write_str("an edge is not on its track"),
+            Self::EdgeLength => f.write_str("the length of an edge is no length"),
+            Self::TrackTotals => f.write_str("its tracks have not all of its locks and edges"),
+            Self::NameOrder => f.write_str("its names do not follow one another"),
+            Self::NamesLength => f.write_str("its names are longer or shorter than they say"),
+            Self::LocksMissing(name) => write!(f, "the locks of {name} are not in it"),
+            Self::LocksChecksum(name) => write!(f, "the checksum of the locks of {name} is wrong"),
+            Self::NoLock(name) => write!(f, "a lock of {name} is none"),
+        }
+    }
 }
 
 impl std::fmt::Display for ExclusionIndexError {
@@ -57,6 +114,12 @@ impl std::error::Error for ExclusionIndexError {}
 impl From<io::Error> for ExclusionIndexError {
     fn from(error: io::Error) -> Self {
         Self::Io(error)
+    }
+}
+
+impl From<IndexDamage> for ExclusionIndexError {
+    fn from(damage: IndexDamage) -> Self {
+        Self::Damaged(damage)
     }
 }
 
@@ -179,47 +242,46 @@ impl ExclusionIndex {
         let mut file = File::open(file)?;
         let size = file.metadata()?.len();
         let mut header = [0; HEADER as usize];
-        let damaged = |problem: &str| Err(ExclusionIndexError::Damaged(problem.to_owned()));
         if size < HEADER || file.read_exact(&mut header).is_err() || header[..8] != MAGIC {
-            return damaged("it does not begin like one");
+            return Err(IndexDamage::Magic.into());
         }
         let word = |at: usize| header.get(at..at + 4).map_or(0, le32);
         if word(8) != VERSION {
-            return damaged(&format!("version {}; known is {VERSION}", word(8)));
+            return Err(IndexDamage::Version(word(8)).into());
         }
         if word(12) != crc32(&header[16..]) {
-            return damaged("the checksum of its header is wrong");
+            return Err(IndexDamage::HeaderChecksum.into());
         }
         let [places, tracks, records, length] = [16, 24, 32, 40].map(|at| header.get(at..at + 8).map_or(0, le64));
         let begin = records.checked_mul(RECORD as u64).and_then(|bytes| bytes.checked_add(HEADER));
         if begin.and_then(|begin| begin.checked_add(length)) != Some(size) {
-            return damaged("it is longer or shorter than its header says");
+            return Err(IndexDamage::Size.into());
         }
         let mut directory = Vec::new();
         file.seek(SeekFrom::Start(size - length))?;
         (&file).take(length).read_to_end(&mut directory)?;
         if crc32(&directory) != word(48) {
-            return damaged("the checksum of its names is wrong");
+            return Err(IndexDamage::NamesChecksum.into());
         }
         let index = Self { file, directory, counts: [places, tracks, records], origin: word(52) };
-        index.check().map_err(|problem| ExclusionIndexError::Damaged(problem.to_owned()))?;
+        index.check()?;
         Ok(index)
     }
 
     /// Checks that the directory is as long as its numbers say, and that these fit one another: tracks have all records and all places
     /// between them, one after the other.
-    fn check(&self) -> Result<(), &'static str> {
+    fn check(&self) -> Result<(), IndexDamage> {
         let [places, tracks, records] = self.counts;
         let length = self.directory.len() as u64;
         if places.max(tracks) > length || self.names_at() > length {
-            return Err("its names are shorter than its numbers say");
+            return Err(IndexDamage::NamesTooShort);
         }
         let (mut record, mut member) = (0, 0);
         let mut seen = vec![false; usize::try_from(places).unwrap_or_default()];
         for track in 0..tracks {
             let (first, [count, _, begin, members]) = self.track(track as u32);
             if first != record || u64::from(begin) != member || member + u64::from(members) > places {
-                return Err("its tracks do not follow one another");
+                return Err(IndexDamage::TrackOrder);
             }
             record += u64::from(count);
             for _ in 0..members {
@@ -227,33 +289,33 @@ impl ExclusionIndex {
                 let own = self.record(place);
                 let is_new = usize::try_from(place).ok().and_then(|place| seen.get_mut(place));
                 if u64::from(own.track) != track || is_new.is_none_or(|seen| std::mem::replace(seen, true)) {
-                    return Err("an edge is not on its track");
+                    return Err(IndexDamage::EdgeOffTrack);
                 }
                 if !(own.length >= 0.0 && own.length.is_finite()) {
-                    return Err("the length of an edge is no length");
+                    return Err(IndexDamage::EdgeLength);
                 }
                 member += 1;
             }
         }
         if (record, member) != (records, places) {
-            return Err("its tracks have not all of its locks and edges");
+            return Err(IndexDamage::TrackTotals);
         }
         self.check_names()
     }
 
     /// Checks that names follow one another up to the end.
-    fn check_names(&self) -> Result<(), &'static str> {
+    fn check_names(&self) -> Result<(), IndexDamage> {
         let places = self.counts[0];
         let mut before = 0;
         for place in 0..=places {
             let end = self.name_end(place);
             if end < before || place == 0 && end != 0 {
-                return Err("its names do not follow one another");
+                return Err(IndexDamage::NameOrder);
             }
             before = end;
         }
         if self.names_at() + before != self.directory.len() as u64 {
-            return Err("its names are longer or shorter than they say");
+            return Err(IndexDamage::NamesLength);
         }
         Ok(())
     }
@@ -348,13 +410,13 @@ impl ExclusionIndex {
         let own = self.record(place);
         let (first, [count, sum, ..]) = self.track(own.track);
         if first.saturating_add(u64::from(count)) > self.counts[2] {
-            return Err(ExclusionIndexError::Damaged(format!("the locks of {name} are not in it")));
+            return Err(IndexDamage::LocksMissing(name.to_owned()).into());
         }
         let mut bytes = vec![0; count as usize * RECORD];
         self.file.seek(SeekFrom::Start(HEADER + first * RECORD as u64))?;
         self.file.read_exact(&mut bytes)?;
         if crc32(&bytes) != sum {
-            return Err(ExclusionIndexError::Damaged(format!("the checksum of the locks of {name} is wrong")));
+            return Err(IndexDamage::LocksChecksum(name.to_owned()).into());
         }
         let mut partners = Vec::new();
         for record in bytes.chunks_exact(RECORD) {
@@ -363,7 +425,7 @@ impl ExclusionIndex {
             let track = le32(&record[..4]);
             let is_range = |[from, to]: [f64; 2]| from.is_finite() && to.is_finite() && from <= to;
             if u64::from(track) >= self.counts[1] || !lengths.into_iter().all(is_range) {
-                return Err(ExclusionIndexError::Damaged(format!("a lock of {name} is none")));
+                return Err(IndexDamage::NoLock(name.to_owned()).into());
             }
             let (_, [_, _, begin, members]) = self.track(track);
             for k in 0..u64::from(members) {

@@ -1,5 +1,6 @@
 //! An agent as one body that never changes: for what moves one body, and not a list of parts that come and go.
 
+use super::RangeProblem;
 use super::outline::CORNERS;
 use pcr_core::{InvalidInput, Motion, Outline, PathRef, ProfileRef, Vector};
 use pcr_formats::footprint::Footprint;
@@ -110,14 +111,16 @@ impl ConvexBody {
     /// The convex hull of what an agent is, where that is no disc and more than one convex outline.
     ///
     /// # Errors
-    /// What is wrong, in words.
-    pub(super) fn hull_of(agent: &Agent) -> Result<Option<Footprint>, String> {
+    /// Why it is no outline.
+    pub(super) fn hull_of(agent: &Agent) -> Result<Option<Footprint>, RangeProblem> {
         if !agent.has_parts() {
             return Ok(None);
         }
-        match Self::of_agent(agent).map_err(|reason| reason.to_string())? {
+        match Self::of_agent(agent).map_err(RangeProblem::Hull)? {
             Self::Disc(_) => Ok(None),
-            Self::Outline(hull) => Footprint::new(hull.corners).map(|it| Some(it.inflated(hull.radius))),
+            Self::Outline(hull) => Footprint::new(hull.corners)
+                .map(|it| Some(it.inflated(hull.radius)))
+                .map_err(RangeProblem::HullFootprint),
         }
     }
 

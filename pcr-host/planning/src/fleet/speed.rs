@@ -1,6 +1,6 @@
 //! Converts the speed profile of a scenario to phases of the core.
 
-use super::{HostScalar, derived, number};
+use super::{HostScalar, RangeProblem, derived, number};
 use pcr_core::Phase;
 use pcr_formats::scenario::speed_after;
 
@@ -12,7 +12,7 @@ const ROUNDS: usize = 3;
 const SHARE: f64 = 0.125;
 
 /// Piece of the profile (from 0) where there is one, and what is wrong.
-type PhaseFault = (Option<usize>, String);
+type PhaseFault = (Option<usize>, RangeProblem);
 
 /// The phases of `pieces` (durations \[s\] and accelerations \[m/s²\]) from speed `v0` \[m/s\].
 ///
@@ -71,7 +71,7 @@ fn phase<S: HostScalar>(
     before: S,
     after: f64,
     duration: f64,
-) -> Result<(Phase<S>, S), String> {
+) -> Result<(Phase<S>, S), RangeProblem> {
     // A speed that the format takes as 0 is none, unless a last digit of a length is travelled with it.
     let stands = S::from_f64(after) == S::ZERO && after * duration <= S::slack(S::ZERO).to_f64();
     let after = if stands { S::ZERO } else { number("speed", after)? };

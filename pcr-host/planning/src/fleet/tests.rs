@@ -3,6 +3,7 @@
 use super::*;
 use pcr_core::{MismatchError, first_conflict};
 use pcr_fixed::{Q12, Q16, Q20};
+use pcr_formats::scenario::figure;
 use serde_json::{Value, json};
 
 /// A line of 2 m and a quarter turn.
