@@ -1,9 +1,9 @@
 //! Compiles the programs in `peers/` that run other libraries' methods, each where its library is installed. Where a library is not installed, the tool says so when it compares; in continuous integration (`CI=true`) that
 //! is an error. A program that cannot be compiled is an error everywhere.
 
-use std::env;
 use std::path::{Path, PathBuf};
 use std::process::Command;
+use std::{env, io};
 
 fn main() {
     println!("cargo:rerun-if-changed=build.rs");
@@ -64,7 +64,7 @@ fn watch_folders() {
 }
 
 /// Makes the program, and returns the version of the library.
-fn compile(name: &str, packages: &[&str], program: &Path) -> Result<String, String> {
+fn compile(name: &str, packages: &[&str], program: &Path) -> io::Result<String> {
     let flags = |which: &str| run(Command::new("pkg-config").arg(which).args(packages));
     let include = flags("--cflags")?;
     // Warnings of the libraries' headers are not ours.
@@ -81,14 +81,14 @@ fn compile(name: &str, packages: &[&str], program: &Path) -> Result<String, Stri
 }
 
 /// What a command prints, or what it complains about: the first line with an error in it, else the last one.
-fn run(command: &mut Command) -> Result<String, String> {
+fn run(command: &mut Command) -> io::Result<String> {
     let name = command.get_program().to_string_lossy().into_owned();
-    let output = command.output().map_err(|error| format!("{name}: {error}"))?;
+    let output = command.output().map_err(|error| io::Error::new(error.kind(), format!("{name}: {error}")))?;
     if output.status.success() {
         return Ok(String::from_utf8_lossy(&output.stdout).into_owned());
     }
     let complaint = String::from_utf8_lossy(&output.stderr);
     let complaint =
         complaint.lines().find(|line| line.contains("error")).or(complaint.lines().last()).unwrap_or("failed");
-    Err(format!("{name}: {complaint}"))
+    Err(io::Error::other(format!("{name}: {complaint}")))
 }

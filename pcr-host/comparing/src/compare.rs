@@ -35,12 +35,13 @@ pub use disc_track::DiscTrack;
 pub use errors::Accuracy;
 pub use measure::{Comparison, MeasurementBudget, MethodMeasurement, UnavailableMethod, median};
 
-use pcr_core::Motion;
+use pcr_core::{CapacityError, Motion};
 use pcr_fixed::Q16;
 use pcr_formats::scenario::Scenario;
 use pcr_planning::fleet::{Fleet, FormatRangeError, HostScalar};
 use serde::Serialize;
 use std::hint::black_box;
+use std::{fmt, io};
 use stopwatch::{Stopwatch, steady};
 
 /// A fleet, in every form that a method starts from.
@@ -133,10 +134,36 @@ pub enum MethodAnswer<'a> {
 }
 
 /// An answer, or why there is none.
-pub type MethodResult<'f> = Result<MethodAnswer<'f>, String>;
+pub type MethodResult<'f> = Result<MethodAnswer<'f>, MethodError>;
 
 /// Why a method has no answer that can have one for other fleets.
-const BEYOND: &str = "this fleet is beyond what it can hold";
+#[derive(Debug)]
+pub enum MethodError {
+    /// The fleet is beyond what the method can hold.
+    Beyond,
+    /// The table of the method is too large.
+    Full(CapacityError),
+    /// The program of the method failed.
+    Program(io::Error),
+}
+
+impl fmt::Display for MethodError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Beyond => f.write_str("this fleet is beyond what it can hold"),
+            Self::Full(full) => full.fmt(f),
+            Self::Program(error) => write!(f, "its program failed: {error}"),
+        }
+    }
+}
+
+impl std::error::Error for MethodError {}
+
+impl From<CapacityError> for MethodError {
+    fn from(full: CapacityError) -> Self {
+        Self::Full(full)
+    }
+}
 
 /// A way to find collisions.
 pub trait CollisionMethod: Sync {

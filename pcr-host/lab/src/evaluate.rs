@@ -90,6 +90,8 @@ impl fmt::Display for EvaluationError {
     }
 }
 
+impl std::error::Error for EvaluationError {}
+
 impl<F: Into<ComputationError>> From<F> for EvaluationError {
     fn from(failure: F) -> Self {
         Self::Fleet(failure.into())

@@ -15,6 +15,7 @@ mod cell_dependencies;
 mod fixed_precedences;
 mod switchable_precedences;
 
+use crate::error::LabError;
 use cell_dependencies::CellDependencyGraph;
 use fixed_precedences::FixedPrecedences;
 use pcr_core::Motion;
@@ -121,9 +122,9 @@ pub fn carried_out(
     radius: f64,
     by: ExecutionMethod,
     stops: &RandomStops,
-) -> Result<GridRunResult, String> {
-    let scenario = plan.scenario(radius + ROOM).map_err(|error| error.to_string())?;
-    let fleet = Fleet::<f64>::new(&scenario).map_err(|refused| refused.to_string())?;
+) -> Result<GridRunResult, LabError> {
+    let scenario = plan.scenario(radius + ROOM)?;
+    let fleet = Fleet::<f64>::new(&scenario)?;
     let motions = fleet.motions();
     let begin = Instant::now();
     let (run, known) = match by {
@@ -147,8 +148,8 @@ pub fn carried_out(
         }
     };
     let times = [known, begin.elapsed() - known];
-    let done = run.scenario(plan.scenario(radius).map_err(|error| error.to_string())?);
-    let proof = MotionCertificate::prove::<f64>(&done).map_err(|refused| refused.to_string())?;
+    let done = run.scenario(plan.scenario(radius)?);
+    let proof = MotionCertificate::prove::<f64>(&done)?;
     let alone = GridExecution::new(&motions, stops).driven(&mut UnimpededExecution);
     Ok(GridRunResult {
         travel: run.travel(),
@@ -184,15 +185,15 @@ pub fn random_stops(robots: usize, until: u32, rate: f64, seed: u64) -> RandomSt
 ///
 /// # Errors
 /// An invalid file, or one for another number of robots.
-pub fn situation(text: &str, robots: usize) -> Result<RandomStops, String> {
+pub fn situation(text: &str, robots: usize) -> Result<RandomStops, LabError> {
     #[derive(Deserialize)]
     struct DelaySituation {
         delay_steps: Vec<u32>,
         states: Vec<u32>,
     }
-    let read: DelaySituation = serde_json::from_str(text).map_err(|error| error.to_string())?;
+    let read: DelaySituation = serde_json::from_str(text)?;
     if [read.delay_steps.len(), read.states.len()] != [robots; 2] {
-        return Err(format!("the situation is of {} robots, the plan of {robots}", read.delay_steps.len()));
+        return Err(LabError::RobotCount([read.delay_steps.len(), robots]));
     }
     let begin = read.states.into_iter().max().map_or(0.0, f64::from);
     let stops = |steps: u32| if steps > 0 { vec![[begin, begin + f64::from(steps)]] } else { Vec::new() };

@@ -8,6 +8,7 @@ use pcr_formats::output;
 use pcr_formats::scenario::Scenario;
 use pcr_lab::evaluate::{self, Thoroughness};
 use pcr_lab::methods::methods;
+use std::error::Error;
 use std::fmt::Display;
 use std::io::{self, BufWriter, Write};
 use std::path::PathBuf;
@@ -81,7 +82,7 @@ fn main() -> ExitCode {
 }
 
 impl EvaluateArgs {
-    fn run(self) -> Result<(), String> {
+    fn run(self) -> Result<(), Box<dyn Error>> {
         let extent = if self.quick { Thoroughness::Quick } else { Thoroughness::Full };
         output::folder(&self.output).map_err(|error| not_written(self.output.display(), &error))?;
         let begin = Instant::now();
@@ -89,7 +90,7 @@ impl EvaluateArgs {
             eprintln!("part {} of {parts}: {part}, {} s after the begin", done + 1, begin.elapsed().as_secs());
         };
         let files = evaluate::write(&self.data, &self.output, extent, &self.only, &mut begins);
-        for file in files.map_err(|problem| problem.to_string())? {
+        for file in files? {
             println!("{}", file.display());
         }
         Ok(())
@@ -97,7 +98,7 @@ impl EvaluateArgs {
 }
 
 impl LabCompareArgs {
-    fn run(self) -> Result<(), String> {
+    fn run(self) -> Result<(), Box<dyn Error>> {
         let effort = MeasurementBudget { rounds: self.rounds.into(), budget: BUDGET, slices: SLICES };
         let mut out = BufWriter::new(io::stdout().lock());
         for file in &self.files {

@@ -132,7 +132,7 @@ fn compare(
                 let row = row(&truth, method, &answer);
                 courses.push(MethodTimer { method, times: vec![[took, base]], rounds, row });
             }
-            Err(reason) => leave_out(reason),
+            Err(reason) => leave_out(reason.to_string()),
         }
         progress(done + 1, total);
     }

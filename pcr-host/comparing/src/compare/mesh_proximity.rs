@@ -2,7 +2,7 @@
 //! with the discrete queries of the crate `parry3d`, for pairs whose boxes meet. The cylinders circumscribe the discs.
 
 use super::disc_track::{DiscTrack, Xy};
-use super::{BEYOND, CollisionMethod, ComparisonFleet, MethodAnswer, MethodContact, MethodQuestion, MethodResult};
+use super::{CollisionMethod, ComparisonFleet, MethodAnswer, MethodContact, MethodError, MethodQuestion, MethodResult};
 use parry3d_f64::math::{Pose, Vector};
 use parry3d_f64::query::intersection_test;
 use parry3d_f64::shape::TriMesh;
@@ -46,7 +46,7 @@ impl CollisionMethod for MeshProximityMethod {
             .iter()
             .map(|track| MeshCylinder::new(track, &times))
             .collect::<Option<Vec<_>>>()
-            .ok_or(BEYOND)?;
+            .ok_or(MethodError::Beyond)?;
         let mut found = Vec::new();
         for (first, a) in bodies.iter().enumerate() {
             for (second, b) in bodies.iter().enumerate().skip(first + 1) {

@@ -1,7 +1,7 @@
 //! The method of this library.
 
 use super::{
-    BEYOND, CollisionMethod, ComparedScalar, ComparisonFleet, MethodAnswer, MethodContact, MethodQuestion,
+    CollisionMethod, ComparedScalar, ComparisonFleet, MethodAnswer, MethodContact, MethodError, MethodQuestion,
     MethodResult, RegionSet,
 };
 use pcr_core::{Aabb, BroadPhase, EcmEntry, Interval, Motion, Piece, RegionRef};
@@ -74,12 +74,10 @@ impl<S: ComparedScalar> CollisionMethod for PcrRegionsMethod<S> {
     }
 
     fn answer<'f>(&self, field: &'f ComparisonFleet<'_>) -> MethodResult<'f> {
-        let motions = S::motions(field).ok_or(BEYOND)?;
+        let motions = S::motions(field).ok_or(MethodError::Beyond)?;
         Ok(MethodAnswer::Regions(match self.0 {
-            Parallelism::One => {
-                Box::new(WholeTable { motions, table: build_ecm(motions).map_err(|full| full.to_string())? })
-            }
-            Parallelism::All => Box::new(AgentTables(rows(motions).map_err(|full| full.to_string())?)),
+            Parallelism::One => Box::new(WholeTable { motions, table: build_ecm(motions)? }),
+            Parallelism::All => Box::new(AgentTables(rows(motions)?)),
         }))
     }
 }
@@ -150,11 +148,11 @@ impl<S: ComparedScalar> CollisionMethod for PcrConflictsMethod<S> {
     }
 
     fn answer<'f>(&self, field: &'f ComparisonFleet<'_>) -> MethodResult<'f> {
-        let motions = S::motions(field).ok_or(BEYOND)?;
+        let motions = S::motions(field).ok_or(MethodError::Beyond)?;
         let during = field.horizon.map(S::from_f64);
         let during = Interval::new(during[0], during[1]);
         let boxes = vec![Aabb::default(); motions.len() * (1 + PARTS)];
-        let broad_phase = BroadPhase::new(boxes, motions, during).map_err(|full| full.to_string())?;
+        let broad_phase = BroadPhase::new(boxes, motions, during)?;
         let found = |(agents, time): FoundInterval<S>| MethodContact {
             agents,
             begin: time.lo.to_f64(),

@@ -2,6 +2,7 @@
 //! by cells.
 
 use super::{DocumentSection, EvaluationError, PaperFleets, Thoroughness};
+use crate::error::LabError;
 use crate::grid_plans::{ExecutionMethod, GridRunResult, RandomStops, carried_out, random_stops, situation};
 use pcr_formats::import::GridPlan;
 use pcr_planning::figures::digits;
@@ -37,8 +38,8 @@ pub(super) fn section(fleets: &PaperFleets, extent: Thoroughness) -> Result<Docu
     let files = plans(&fleets.data.join("real/stpg"))?;
     let count = if extent == Thoroughness::Quick { 1 } else { files.len() };
     for file in &files[..count] {
-        let problem = |problem: String| EvaluationError::File(file.clone(), problem);
-        let plan = GridPlan::read(&read(file)?).map_err(|error| problem(error.to_string()))?;
+        let problem = |problem: LabError| EvaluationError::File(file.clone(), problem.to_string());
+        let plan = GridPlan::read(&read(file)?).map_err(|error| problem(error.into()))?;
         for (kind, stops) in all_stops(file, &plan)? {
             let cells = carried_out(&plan, RADII[0], ExecutionMethod::Cells, &stops).map_err(problem)?;
             for radius in RADII {
@@ -113,7 +114,7 @@ fn all_stops(file: &Path, plan: &GridPlan) -> Result<Vec<(&'static str, RandomSt
     let mut all = Vec::new();
     if published.exists() {
         let stops = situation(&read(&published)?, robots);
-        all.push(("published", stops.map_err(|problem| EvaluationError::File(published, problem))?));
+        all.push(("published", stops.map_err(|problem| EvaluationError::File(published, problem.to_string()))?));
     }
     all.push(("random", random_stops(robots, LONGEST, RATE, 1)));
     Ok(all)

@@ -1,6 +1,7 @@
 //! Fleets that run for a quarter of an hour on all layouts of others in the repository: orders beside locks.
 
 use super::{CORNER_RADIUS, DocumentSection, EvaluationError, PaperFleets, Thoroughness};
+use crate::error::LabError;
 use pcr_execution::lifelong::{CoordinationMethod, DelayModel, LifelongOptions, LifelongReport, LifelongRunEntry};
 use pcr_formats::import::{self, ImportOptions, ImportedLayout, InputFormat, Warnings};
 use pcr_planning::figures::digits;
@@ -107,13 +108,13 @@ pub(super) fn section(fleets: &PaperFleets, extent: Thoroughness) -> Result<Docu
     Ok(DocumentSection { text, pictures: Vec::new() })
 }
 
-fn read(fleets: &PaperFleets, name: &str, radius: f64) -> Result<ImportedLayout, String> {
+fn read(fleets: &PaperFleets, name: &str, radius: f64) -> Result<ImportedLayout, LabError> {
     let path = fleets.data.join("real").join(name);
-    let text = fs::read_to_string(&path).map_err(|error| format!("cannot be read: {error}"))?;
-    let format = InputFormat::detect(&path, &text).ok_or("no layout")?;
+    let text = fs::read_to_string(&path)?;
+    let format = InputFormat::detect(&path, &text).ok_or(LabError::NoLayout)?;
     let options =
         ImportOptions { radius: Some(radius), corner_radius: Some(CORNER_RADIUS), ..ImportOptions::default() };
-    import::roads(format, &text, &options, &mut Warnings::default()).map_err(|error| error.to_string())
+    Ok(import::roads(format, &text, &options, &mut Warnings::default())?)
 }
 
 fn row(name: &str, radius: f64, agents: usize, answers: &[LifelongReport]) -> String {

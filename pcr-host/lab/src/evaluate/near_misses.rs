@@ -2,7 +2,9 @@
 
 use super::{DocumentSection, EvaluationError, PaperFleets, Thoroughness};
 use crate::methods::methods;
-use pcr_comparing::compare::{CollisionMethod, ComparisonFleet, ComparisonInput, MethodAnswer, MethodQuestion};
+use pcr_comparing::compare::{
+    CollisionMethod, ComparisonFleet, ComparisonInput, MethodAnswer, MethodError, MethodQuestion,
+};
 use pcr_formats::scenario::{Agent, MotionSpec, PathSegment, Scenario};
 use pcr_planning::fleet::FormatRangeError;
 use std::f64::consts::{FRAC_PI_2, PI, SQRT_2};
@@ -86,7 +88,7 @@ fn sampled(method: &dyn CollisionMethod) -> bool {
 }
 
 fn collides(method: &dyn CollisionMethod, field: &ComparisonFleet<'_>) -> Result<bool, EvaluationError> {
-    let failed = |reason: String| EvaluationError::Method(method.name(), reason);
+    let failed = |reason: MethodError| EvaluationError::Method(method.name(), reason.to_string());
     Ok(match method.answer(field).map_err(failed)? {
         MethodAnswer::Conflicts(found) => !found.is_empty(),
         MethodAnswer::Regions(regions) => {

@@ -41,7 +41,7 @@ pub(super) fn section(fleets: &PaperFleets, extent: Thoroughness) -> Result<Docu
     for set in 0..sets {
         let file = folder.join(file(set));
         let problem = |problem: String| EvaluationError::File(file.clone(), problem);
-        let (imported, mut tasks) = roadmap::read(&read(&file)?).map_err(problem)?;
+        let (imported, mut tasks) = roadmap::read(&read(&file)?).map_err(|refused| problem(refused.to_string()))?;
         tasks.tasks.truncate(count);
         let done = |delays: DelayModel| {
             let request =

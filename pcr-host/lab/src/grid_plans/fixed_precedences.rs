@@ -1,6 +1,7 @@
 //! Keeps the passing orders of a plan: each robot looks at the regions ahead that it passes second.
 
 use super::{ExecutionRule, ROOM};
+use crate::error::LabError;
 use pcr_core::{CheckState, CheckTolerances, Motion, MovementAuthority, PassingState, Progress, RegionRef};
 use pcr_planning::fleet::{HostPrecedenceTable, build_orders};
 
@@ -8,13 +9,13 @@ use pcr_planning::fleet::{HostPrecedenceTable, build_orders};
 const AHEAD: f64 = 2.0;
 
 /// The orders in which the motions pass their regions; with these all robots can finish.
-pub(super) fn table(motions: &[Motion<'_, f64>]) -> Result<HostPrecedenceTable, String> {
-    let mut table = build_orders(motions).map_err(|full| full.to_string())?;
-    table.as_planned(motions).map_err(|refused| refused.to_string())?;
+pub(super) fn table(motions: &[Motion<'_, f64>]) -> Result<HostPrecedenceTable, LabError> {
+    let mut table = build_orders(motions)?;
+    table.as_planned(motions)?;
     let progress = vec![Progress::at_rest(0.0); motions.len()];
     let tolerances = CheckTolerances { width: 0.0, gain: 1e-3 };
     let mut reaches = vec![CheckState::EMPTY; motions.len()];
-    table.check(motions, &progress, tolerances, &mut reaches).map_err(|refused| refused.to_string())?;
+    table.check(motions, &progress, tolerances, &mut reaches)?;
     Ok(table)
 }
 
@@ -54,10 +55,10 @@ pub(super) struct FixedPrecedences<'a> {
 }
 
 impl<'a> FixedPrecedences<'a> {
-    pub(super) fn new(table: &'a HostPrecedenceTable, motions: &'a [Motion<'a, f64>]) -> Result<Self, String> {
+    pub(super) fn new(table: &'a HostPrecedenceTable, motions: &'a [Motion<'a, f64>]) -> Result<Self, LabError> {
         let mut pairs = Vec::new();
         for robot in 0..motions.len() {
-            let row = table.row(motions, robot).map_err(|mismatch| mismatch.to_string())?;
+            let row = table.row(motions, robot)?;
             for (_, region, pass) in row.filter(|(_, region, _)| region.other() > robot) {
                 let robots = [robot, region.other()];
                 pairs.push(GridPrecedence { region, robots, second: usize::from(pass == PassingState::First) });

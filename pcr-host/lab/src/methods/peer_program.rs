@@ -4,7 +4,7 @@
 
 use pcr_comparing::compare::stopwatch::{Stopwatch, steady};
 use pcr_comparing::compare::{
-    CollisionMethod, ComparisonFleet, MethodAnswer, MethodContact, MethodQuestion, MethodResult,
+    CollisionMethod, ComparisonFleet, MethodAnswer, MethodContact, MethodError, MethodQuestion, MethodResult,
 };
 use std::io::{self, Write as _};
 use std::path::Path;
@@ -116,7 +116,7 @@ impl CollisionMethod for PeerMethod {
         let (made, input) = steady(Stopwatch::elapsed, || (self.input)(field));
         match self.program.contacts(&input, |time| (self.in_time)(field, time)) {
             Ok((work, answer)) => (made + work, Ok(answer)),
-            Err(error) => (made, Err(format!("its program failed: {error}"))),
+            Err(error) => (made, Err(MethodError::Program(error))),
         }
     }
 }
