@@ -7,7 +7,7 @@ use pcr_formats::import::ImportError;
 use pcr_lab::roadmap;
 use pcr_planning::exclusion_table::{EdgeDriving, StraightEdge, UnsafeDelayModel, UnsafeRelation};
 use pcr_tests::delays::published::cut_conic;
-use pcr_tests::delays::{Exact, ends_of};
+use pcr_tests::delays::{DelayFault, Exact, ends_of};
 use serde_json::Value;
 use std::collections::HashMap;
 use std::fs::read_to_string;
@@ -68,13 +68,13 @@ fn main() -> ExitCode {
                 pairs += 1;
                 let interval = found.get(&[a, b]).copied();
                 match exact.judge(other_exact, reach, interval, straight.error_bound(other, reach)) {
-                    Err(problem) if problem.contains("missing") => {
+                    Err(problem @ (DelayFault::Missing { .. } | DelayFault::Beyond { .. })) => {
                         missing += 1;
-                        eprintln!("{name} {a} {b}: {problem}");
+                        eprintln!("{name} {a} {b}: {problem:?}");
                     }
                     Err(problem) => {
                         wide += 1;
-                        eprintln!("{name} {a} {b}: {problem}");
+                        eprintln!("{name} {a} {b}: {problem:?}");
                     }
                     Ok(()) => {}
                 }

@@ -1,10 +1,39 @@
 //! The arguments of the long commands: numbers by name, and a format.
 
+use std::fmt;
+
 /// What was given.
 #[derive(Clone, Debug)]
 pub struct Arguments {
     numbers: Vec<(&'static str, u64)>,
     format: Option<String>,
+}
+
+/// Why the arguments are refused.
+#[derive(Clone, Debug, PartialEq)]
+enum ArgumentError {
+    /// The last one has no value.
+    NoValue(String),
+    /// The value of one is no number.
+    NotANumber(String, String),
+    /// One that is not known; these are.
+    Unknown(String, Vec<&'static str>),
+    /// A format that is not known; these are.
+    UnknownFormat(String, Vec<String>),
+}
+
+impl fmt::Display for ArgumentError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::NoValue(name) => write!(f, "{name} needs a value"),
+            Self::NotANumber(name, value) => write!(f, "{name} {value}: not a number"),
+            Self::Unknown(name, known) => {
+                let known: Vec<String> = known.iter().map(|known| format!("--{known}")).collect();
+                write!(f, "{name}: allowed are {} and --format", known.join(", "))
+            }
+            Self::UnknownFormat(format, known) => write!(f, "--format {format}: known are {}", known.join(", ")),
+        }
+    }
 }
 
 impl Arguments {
@@ -21,19 +50,22 @@ impl Arguments {
         mut given: impl Iterator<Item = String>,
         names: &[(&'static str, u64)],
         formats: &[&str],
-    ) -> Result<Self, String> {
+    ) -> Result<Self, ArgumentError> {
         let mut found = Self { numbers: names.to_vec(), format: None };
         while let Some(name) = given.next() {
-            let value = given.next().ok_or(format!("{name} needs a value"))?;
+            let value = given.next().ok_or_else(|| ArgumentError::NoValue(name.clone()))?;
             let number = found.numbers.iter_mut().find(|(known, _)| name.strip_prefix("--") == Some(known));
             match number {
-                Some((_, number)) => *number = value.parse().map_err(|_| format!("{name} {value}: not a number"))?,
+                Some((_, number)) => *number = value.parse().map_err(|_| ArgumentError::NotANumber(name, value))?,
                 None if name != "--format" => {
-                    let known: Vec<String> = names.iter().map(|(known, _)| format!("--{known}")).collect();
-                    return Err(format!("{name}: allowed are {} and --format", known.join(", ")));
+                    let known = names.iter().map(|(known, _)| *known).collect();
+                    return Err(ArgumentError::Unknown(name, known));
                 }
                 None if formats.contains(&value.as_str()) => found.format = Some(value),
-                None => return Err(format!("--format {value}: known are {}", formats.join(", "))),
+                None => {
+                    let known = formats.iter().map(ToString::to_string).collect();
+                    return Err(ArgumentError::UnknownFormat(value, known));
+                }
             }
         }
         Ok(found)
@@ -54,7 +86,7 @@ impl Arguments {
 mod tests {
     use super::*;
 
-    fn read(words: &str) -> Result<Arguments, String> {
+    fn read(words: &str) -> Result<Arguments, ArgumentError> {
         let names = [("pairs", 7), ("seed", 1)];
         Arguments::read(words.split_whitespace().map(str::to_owned), &names, &["f32", "q16"])
     }
@@ -70,7 +102,7 @@ mod tests {
             ("--format f16", "known are f32, q16"),
             ("--first 3", "allowed are --pairs, --seed and --format"),
         ] {
-            assert!(read(words).unwrap_err().contains(why), "{words}");
+            assert!(read(words).unwrap_err().to_string().contains(why), "{words}");
         }
     }
 }

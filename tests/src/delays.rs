@@ -14,6 +14,34 @@ pub fn ends_of(layout: &Layout, edge: &LayoutEdge) -> [[f64; 2]; 2] {
     edge.ends.map(|node| layout.nodes[node].point)
 }
 
+/// What is wrong with an interval of delays.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum DelayFault {
+    /// There is none, and the vehicles come this near \[m\].
+    Missing {
+        /// The least distance of their reference points \[m\].
+        apart: f64,
+    },
+    /// Its ends are none \[s\].
+    NoInterval([f64; 2]),
+    /// Both are never under way in the middle of it, or just inside of an end \[s\].
+    NobodyThere([f64; 2]),
+    /// There are contacts beyond an end.
+    Beyond {
+        /// The end \[s\].
+        end: f64,
+        /// The distance just beyond \[m\].
+        apart: f64,
+    },
+    /// An end is too far out.
+    TooWide {
+        /// The end \[s\].
+        end: f64,
+        /// The distance just inside \[m\].
+        apart: f64,
+    },
+}
+
 /// A straight edge with 106 bits.
 #[derive(Clone, Copy, Debug)]
 pub struct Exact {
@@ -115,35 +143,34 @@ impl Exact {
 
     /// What is wrong with an interval of delays that was found for this edge and another one: a contact outside of it, or an end
     /// that is further out than the excess allows (of lengths, and of times).
-    pub fn judge(&self, other: &Self, reach: f64, found: Option<[f64; 2]>, excess: [f64; 2]) -> Result<(), String> {
+    pub fn judge(&self, other: &Self, reach: f64, found: Option<[f64; 2]>, excess: [f64; 2]) -> Result<(), DelayFault> {
         let square = |reach: DoubleDouble| reach * reach;
         let (reach, wide) = (DoubleDouble::from(reach), DoubleDouble::from(reach) + DoubleDouble::from(excess[0]));
         let Some([lo, hi]) = found else {
             return match self.apart(other) {
                 apart if apart > square(reach) => Ok(()),
-                apart => Err(format!("a contact is missing: {} m apart", apart.sqrt().to_f64())),
+                apart => Err(DelayFault::Missing { apart: apart.sqrt().to_f64() }),
             };
         };
         if lo.is_nan() || hi.is_nan() || lo > hi {
-            return Err(format!("no interval: {lo} {hi}"));
+            return Err(DelayFault::NoInterval([lo, hi]));
         }
         // Rounding may lead to where nobody is.
         let there = |delay: f64| DoubleDouble::from(delay).clamp(-other.duration, self.duration);
         let middle = there(0.5 * (lo + hi));
-        let inside = self.nearest(other, middle).ok_or("both are never under way in the middle")?;
+        let inside = self.nearest(other, middle).ok_or(DelayFault::NobodyThere([lo, hi]))?;
         for (end, beyond, inward) in [(lo, lo.next_down(), excess[1]), (hi, hi.next_up(), -excess[1])] {
             // Beyond the end nobody is there any more, or they are apart and the farther the more: f is convex.
             if let Some(apart) = self.nearest(other, DoubleDouble::from(beyond))
                 && (apart <= square(reach) || apart <= inside)
             {
-                return Err(format!("contacts beyond {end} s are missing: {} m", apart.sqrt().to_f64()));
+                return Err(DelayFault::Beyond { end, apart: apart.sqrt().to_f64() });
             }
             let half = 0.5 * (hi - lo);
             let inner = there(end + inward.clamp(-half, half));
-            let within = self.nearest(other, inner).ok_or("nobody is there just inside")?;
+            let within = self.nearest(other, inner).ok_or(DelayFault::NobodyThere([lo, hi]))?;
             if within > square(wide) {
-                let apart = within.sqrt().to_f64();
-                return Err(format!("too wide: just inside {end} s they are {apart} m apart"));
+                return Err(DelayFault::TooWide { end, apart: within.sqrt().to_f64() });
             }
         }
         Ok(())

@@ -74,7 +74,10 @@ fn numbers_that_the_format_does_not_have_are_refused() {
     let wrong = |change: &dyn Fn(&mut RawTable)| {
         let mut other = table.clone();
         change(&mut other);
-        Checker::new(&other).and_then(|checker| checker.check(CoverageMargin::Needed)).expect_err("is refused").to_string()
+        Checker::new(&other)
+            .and_then(|checker| checker.check(CoverageMargin::Needed))
+            .expect_err("is refused")
+            .to_string()
     };
     let finer = 2.0_f64.powi(-17);
     assert!(wrong(&|it| it.pairs[0].pieces[0].lengths[0][1] -= finer).contains("ends that its number format has not"));

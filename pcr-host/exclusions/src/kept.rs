@@ -6,6 +6,7 @@
 use pcr_formats::import::{ElementId, ImportError, ImportedLayout, Layout, LayoutEdge};
 use pcr_formats::scenario::{PathSegment, PlacedSegment};
 use std::collections::HashMap;
+use std::fmt;
 
 /// Rounding of coordinates, relative to them: far more than that of a few sums, and less than what anybody measures.
 const RELATIVE: f64 = 1e-9;
@@ -24,26 +25,82 @@ pub(crate) struct Cut {
 /// # Errors
 /// The first node or edge that is not where it was, or was not there.
 pub(crate) fn compare(before: &ImportedLayout, after: &ImportedLayout, cut: Cut) -> Result<(), ImportError> {
-    let refused = |what: String| Err(ImportError::new(format!("what would be written is another layout: {what}")));
+    differ(before, after, cut)
+        .map_err(|what| ImportError::new(format!("what would be written is another layout: {what}")))
+}
+
+/// The first difference of a layout from the one before.
+#[derive(Clone, Debug, PartialEq)]
+enum LayoutDifference {
+    /// Another vehicle.
+    Vehicle,
+    /// Another name, or other levels: before, and after.
+    Levels([(String, Vec<String>); 2]),
+    /// A node is missing.
+    MissingNode(ElementId),
+    /// A node is elsewhere: before, and after.
+    MovedNode(ElementId, [[f64; 2]; 2]),
+    /// An edge differs.
+    Edge(ElementId, EdgeDifference),
+    /// An edge is on none of the edges before.
+    StrangeEdge(ElementId),
+    /// A node is on none of the edges before.
+    StrangeNode(ElementId),
+}
+
+/// What is wrong with an edge.
+#[derive(Clone, Debug, PartialEq)]
+enum EdgeDifference {
+    /// It is missing, or not what it was.
+    Missing,
+    /// A part of it is missing.
+    MissingPart,
+    /// It has another name.
+    Renamed(ElementId),
+}
+
+impl fmt::Display for EdgeDifference {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Missing => f.write_str("it is missing, or not what it was"),
+            Self::MissingPart => f.write_str("a part is missing"),
+            Self::Renamed(id) => write!(f, "it is called {id} there"),
+        }
+    }
+}
+
+impl fmt::Display for LayoutDifference {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Vehicle => f.write_str("its vehicle is another one"),
+            Self::Levels([(name, levels), (new, others)]) => {
+                write!(f, "{name:?} with levels {levels:?} became {new:?} with {others:?}")
+            }
+            Self::MissingNode(id) => write!(f, "node {id} is missing"),
+            Self::MovedNode(id, [was, is]) => write!(f, "node {id} is at {is:?}, and was at {was:?}"),
+            Self::Edge(id, what) => write!(f, "edge {id}: {what}"),
+            Self::StrangeEdge(id) => write!(f, "edge {id} is on none of the edges before"),
+            Self::StrangeNode(id) => write!(f, "node {id} is on none of the edges before"),
+        }
+    }
+}
+
+fn differ(before: &ImportedLayout, after: &ImportedLayout, cut: Cut) -> Result<(), LayoutDifference> {
     if before.vehicle != after.vehicle {
-        return refused("its vehicle is another one".into());
+        return Err(LayoutDifference::Vehicle);
     }
     let (old, new) = (&before.layout, &after.layout);
     if (&old.name, &old.levels) != (&new.name, &new.levels) {
-        return refused(format!(
-            "{:?} with levels {:?} became {:?} with {:?}",
-            old.name, old.levels, new.name, new.levels
-        ));
+        return Err(LayoutDifference::Levels([old, new].map(|layout| (layout.name.clone(), layout.levels.clone()))));
     }
     let places: HashMap<&ElementId, usize> =
         new.nodes.iter().enumerate().map(|(place, node)| (&node.id, place)).collect();
     let mut kept = vec![false; new.nodes.len()];
     let mut nodes = Vec::with_capacity(old.nodes.len());
     for node in &old.nodes {
-        let Some(&place) = places.get(&node.id) else { return refused(format!("node {} is missing", node.id)) };
+        let Some(&place) = places.get(&node.id) else { return Err(LayoutDifference::MissingNode(node.id.clone())) };
         if new.nodes[place] != *node {
-            let (at, other) = (node.point, new.nodes[place].point);
-            return refused(format!("node {} is at {other:?}, and was at {at:?}", node.id));
+            return Err(LayoutDifference::MovedNode(node.id.clone(), [node.point, new.nodes[place].point]));
         }
         kept[place] = true;
         nodes.push(place);
@@ -56,16 +113,16 @@ pub(crate) fn compare(before: &ImportedLayout, after: &ImportedLayout, cut: Cut)
             let Some(step) = edge.steps().find(|step| step.backward == backward) else { continue };
             let ends = [nodes[step.origin()], nodes[step.target()]];
             let chain = Chain { edge, backward, ends, cut };
-            if let Err(what) = chain.follow(new, &kept, &mut ways, &mut passed) {
-                return refused(format!("edge {}: {what}", edge.id));
-            }
+            chain
+                .follow(new, &kept, &mut ways, &mut passed)
+                .map_err(|what| LayoutDifference::Edge(edge.id.clone(), what))?;
         }
     }
     if let Some(edge) = ways.unused(new) {
-        return refused(format!("edge {} is on none of the edges before", edge.id));
+        return Err(LayoutDifference::StrangeEdge(edge.id.clone()));
     }
     let strange = new.nodes.iter().enumerate().find(|(place, _)| !kept[*place] && !passed[*place]);
-    strange.map_or(Ok(()), |(_, node)| refused(format!("node {} is on none of the edges before", node.id)))
+    strange.map_or(Ok(()), |(_, node)| Err(LayoutDifference::StrangeNode(node.id.clone())))
 }
 
 /// The directions in which edges may be travelled, by the nodes from which they go, and which of them are taken.
@@ -102,7 +159,13 @@ struct Chain<'a> {
 
 impl Chain<'_> {
     /// Takes the ways that lead along the edge.
-    fn follow(&self, layout: &Layout, kept: &[bool], ways: &mut Ways, passed: &mut [bool]) -> Result<(), String> {
+    fn follow(
+        &self,
+        layout: &Layout,
+        kept: &[bool],
+        ways: &mut Ways,
+        passed: &mut [bool],
+    ) -> Result<(), EdgeDifference> {
         let (mut at, mut done, mut parts) = (self.ends[0], 0.0, 0);
         loop {
             let fits = |&&(place, backward): &&(usize, bool)| {
@@ -113,14 +176,10 @@ impl Chain<'_> {
             let own = |&&(place, _): &&(usize, bool)| layout.edges[place].id == self.edge.id;
             let all = || ways.from[at].iter().filter(fits);
             let Some(&(place, backward)) = all().find(own).or_else(|| all().next()) else {
-                return Err(if parts == 0 {
-                    "it is missing, or not what it was".into()
-                } else {
-                    "a part is missing".into()
-                });
+                return Err(if parts == 0 { EdgeDifference::Missing } else { EdgeDifference::MissingPart });
             };
             if parts == 0 && !self.backward && layout.edges[place].id != self.edge.id {
-                return Err(format!("it is called {} there", layout.edges[place].id));
+                return Err(EdgeDifference::Renamed(layout.edges[place].id.clone()));
             }
             // It fits.
             let Some((target, reached)) = self.next(layout, kept, at, (place, backward), done, parts) else { continue };

@@ -28,6 +28,7 @@ use pcr_planning::exclusion_table::{
 use serde_json::{Value, json};
 use std::collections::{BTreeMap, BTreeSet};
 use std::f64::consts::FRAC_PI_4;
+use std::fmt;
 
 /// Zones reach this far beyond corridors, so that rounding does not count \[m\].
 const BEYOND: f64 = 1e-6;
@@ -299,17 +300,47 @@ fn both(a: &[[f64; 2]], b: &[[f64; 2]]) -> Vec<[f64; 2]> {
     pairs.filter(|[from, to]| from <= to).collect()
 }
 
+/// What is wrong with a field of a zone set.
+#[derive(Clone, Copy, Debug, PartialEq)]
+enum ZoneFieldError {
+    /// It is missing.
+    Missing(&'static str),
+    /// It is no text.
+    NoText(&'static str),
+    /// It is no list.
+    NoList(&'static str),
+    /// A zone has fewer than three corners.
+    FewCorners,
+    /// A corner has a coordinate that is out of range \[m\].
+    OutOfRange(f64),
+    /// All corners are on one line.
+    NoArea,
+}
+
+impl fmt::Display for ZoneFieldError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Missing(field) => write!(f, "{field}: missing"),
+            Self::NoText(field) => write!(f, "{field}: a text is expected"),
+            Self::NoList(field) => write!(f, "{field}: a list is expected"),
+            Self::FewCorners => f.write_str("vertices: three or more are expected"),
+            Self::OutOfRange(far) => write!(f, "vertices: {far:e} is out of range; allowed is up to {LIMIT:e}"),
+            Self::NoArea => f.write_str("vertices: they are on one line"),
+        }
+    }
+}
+
 /// The corners of a zone.
-fn polygon(vertices: &Value) -> Result<Vec<[f64; 2]>, String> {
+fn polygon(vertices: &Value) -> Result<Vec<[f64; 2]>, ZoneFieldError> {
     let corner = |vertex: &Value| Some([vertex["x"].as_f64()?, vertex["y"].as_f64()?]);
     let corners = vertices.as_array().into_iter().flatten().map(corner).collect::<Option<Vec<_>>>();
-    let polygon = corners.filter(|corners| corners.len() >= 3).ok_or("three or more are expected")?;
-    if let Some(far) = polygon.iter().flatten().find(|x| x.abs() > LIMIT) {
-        return Err(format!("{far:e} is out of range; allowed is up to {LIMIT:e}"));
+    let polygon = corners.filter(|corners| corners.len() >= 3).ok_or(ZoneFieldError::FewCorners)?;
+    if let Some(&far) = polygon.iter().flatten().find(|x| x.abs() > LIMIT) {
+        return Err(ZoneFieldError::OutOfRange(far));
     }
     // No vehicle is in a zone that is a line, and what only touches it need not ask for it.
     if !is_area(&polygon) {
-        return Err("they are on one line".to_owned());
+        return Err(ZoneFieldError::NoArea);
     }
     Ok(polygon)
 }
@@ -326,11 +357,11 @@ fn is_area(points: &[[f64; 2]]) -> bool {
 }
 
 /// A field that has to be there, as a text.
-fn text_of<'j>(object: &'j Value, field: &str) -> Result<&'j str, String> {
+fn text_of<'j>(object: &'j Value, field: &'static str) -> Result<&'j str, ZoneFieldError> {
     match &object[field] {
         Value::String(text) => Ok(text),
-        Value::Null => Err(format!("{field}: missing")),
-        _ => Err(format!("{field}: a text is expected")),
+        Value::Null => Err(ZoneFieldError::Missing(field)),
+        _ => Err(ZoneFieldError::NoText(field)),
     }
 }
 
@@ -347,11 +378,11 @@ fn zones_of(root: &Value, layout: &Layout) -> Result<ZoneSet, ImportError> {
     for (k, message) in messages(root).into_iter().enumerate() {
         let set = &message["zoneSet"];
         let place = if root.is_array() { format!("message {}, zoneSet", k + 1) } else { "zoneSet".to_owned() };
-        let refused = |problem: &str| ImportError::new(format!("{place}, {problem}"));
+        let refused = |problem: &dyn fmt::Display| ImportError::new(format!("{place}, {problem}"));
         let id = text_of(set, "mapId").map_err(|problem| refused(&problem))?;
         let Some(&level) = maps.get(id) else {
             let there = maps.into_keys().collect::<Vec<_>>().join(", ");
-            return Err(refused(&format!("mapId: the layout has no map {id}; it has {there}")));
+            return Err(refused(&format_args!("mapId: the layout has no map {id}; it has {there}")));
         };
         if !sets.insert(id) {
             let problem =
@@ -360,15 +391,16 @@ fn zones_of(root: &Value, layout: &Layout) -> Result<ZoneSet, ImportError> {
         }
         let list = match &set["zones"] {
             Value::Array(list) => list,
-            Value::Null => return Err(refused("zones: missing")),
-            _ => return Err(refused("zones: a list is expected")),
+            Value::Null => return Err(refused(&ZoneFieldError::Missing("zones"))),
+            _ => return Err(refused(&ZoneFieldError::NoList("zones"))),
         };
         let mut names: BTreeSet<&str> = BTreeSet::new();
         for (k, zone) in list.iter().enumerate() {
-            let name = text_of(zone, "zoneId").map_err(|problem| refused(&format!("zone {}, {problem}", k + 1)))?;
-            let problem = |what: &str| ImportError::new(format!("zone {name}, {what}"));
+            let name =
+                text_of(zone, "zoneId").map_err(|problem| refused(&format_args!("zone {}, {problem}", k + 1)))?;
+            let problem = |what: &dyn fmt::Display| ImportError::new(format!("zone {name}, {what}"));
             if !names.insert(name) {
-                return Err(problem("zoneId: there is another one of this name in the set"));
+                return Err(problem(&"zoneId: there is another one of this name in the set"));
             }
             let kind = text_of(zone, "zoneType").map_err(|wrong| problem(&wrong))?;
             if kind != "RELEASE" && kind != "BLOCKED" {
@@ -376,7 +408,7 @@ fn zones_of(root: &Value, layout: &Layout) -> Result<ZoneSet, ImportError> {
                 warnings.push(WarningCode::UncountedExclusion.text(text));
                 continue;
             }
-            let polygon = polygon(&zone["vertices"]).map_err(|wrong| problem(&format!("vertices: {wrong}")))?;
+            let polygon = polygon(&zone["vertices"]).map_err(|wrong| problem(&wrong))?;
             groups.push(ExclusionGroup {
                 name: name.to_owned(),
                 outline: polygon.clone(),
