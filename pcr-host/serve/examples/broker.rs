@@ -7,7 +7,7 @@
 
 use pcr_formats::vda5050::header::MessageHeader;
 use pcr_formats::vda5050::order::Order;
-use pcr_formats::vda5050::topics::{TopicInterface, TopicKind, VehicleId};
+use pcr_formats::vda5050::topics::{TopicError, TopicInterface, TopicKind, VehicleId};
 use pcr_formats::vda5050::version::ProtocolVersion;
 use pcr_serve::owned_path::StartPose;
 use pcr_serve::vda5050::bridge::MqttMessage;
@@ -192,7 +192,7 @@ fn publish(link: &MqttLink, message: MqttMessage) {
     }
 }
 
-fn members(count: usize) -> Result<Vec<Member>, String> {
+fn members(count: usize) -> Result<Vec<Member>, TopicError> {
     let width = SPACE * LANES as f64;
     let member = |k: usize| {
         let (lane, back) = (k % (count / 2), if k < count / 2 { 0.0 } else { BEHIND });

@@ -1,14 +1,15 @@
 //! Why a connection to a broker, or simulated vehicles, cannot be set up.
 
 use pcr_formats::import::ElementId;
+use pcr_formats::vda5050::topics::TopicError;
 use std::path::PathBuf;
 use std::{fmt, io};
 
 /// The setting that is wrong, or what the system refuses.
 #[derive(Debug)]
 pub enum SetupError {
-    /// A name that cannot be part of a topic, in words.
-    Topic(String),
+    /// A name that cannot be part of a topic.
+    Topic(TopicError),
     /// TLS is asked for, and this build has none.
     NoTls,
     /// The certificates by which a broker is known cannot be used.
@@ -41,7 +42,7 @@ pub enum SetupError {
 impl fmt::Display for SetupError {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
-            Self::Topic(why) => f.write_str(why),
+            Self::Topic(error) => error.fmt(f),
             Self::NoTls => f.write_str("this build has no TLS: build it with the feature `tls`"),
             Self::Authority { file, why } => write!(f, "{}: {why}", file.display()),
             Self::Thread(error) => error.fmt(f),

@@ -3,6 +3,7 @@
 use super::CliError;
 use pcr_formats::vda5050::topics::TopicInterface;
 use pcr_serve::vda5050::mqtt::BrokerAddress;
+use std::fmt::Display;
 
 /// Least width and lookahead for vehicles of VDA 5050: they are told to stop, and say where they are, so much before where they may be \[m\]; and
 /// they say so less often \[s\].
@@ -10,12 +11,13 @@ pub(super) const AT_BROKERS: (f64, f64) = (0.3, 8.0);
 
 /// Topics of the manager and of the vehicles, which have to be different ones.
 pub(super) fn interfaces(topics: &[String]) -> Result<[TopicInterface; 2], CliError> {
-    let wrong = |why: String| CliError::arguments(format!("--topics: {why}"));
-    let [manager, vehicles] = topics else { return Err(wrong("two are expected".into())) };
+    let wrong = |why: &dyn Display| CliError::arguments(format!("--topics: {why}"));
+    let [manager, vehicles] = topics else { return Err(wrong(&"two are expected")) };
     if manager == vehicles {
-        return Err(wrong("the manager's and the vehicles' have to be different".into()));
+        return Err(wrong(&"the manager's and the vehicles' have to be different"));
     }
-    Ok([TopicInterface::new(manager).map_err(wrong)?, TopicInterface::new(vehicles).map_err(wrong)?])
+    let interface = |prefix: &str| TopicInterface::new(prefix).map_err(|error| wrong(&error));
+    Ok([interface(manager)?, interface(vehicles)?])
 }
 
 /// A broker at HOST:PORT.

@@ -6,9 +6,10 @@
 //! rotation and the scale, and their places the translation, each as a mean.
 
 use super::json_access::JsonObject;
-use super::projection::Projection;
+use super::projection::{Projection, ProjectionError};
 use super::{ImportError, WarningCode, Warnings};
 use crate::json::JsonNode;
+use std::fmt;
 
 /// Relative difference of two scales of a level that goes without a warning.
 const SPREAD: f64 = 0.01;
@@ -29,8 +30,8 @@ impl LevelTransform {
     /// The point in metres.
     ///
     /// # Errors
-    /// A message if the projection does not reach as far.
-    pub(super) fn apply(&self, at: [f64; 2]) -> Result<[f64; 2], String> {
+    /// [`ProjectionError::OutOfRange`] if the projection does not reach as far.
+    pub(super) fn apply(&self, at: [f64; 2]) -> Result<[f64; 2], ProjectionError> {
         match self {
             Self::Plan(plan) => Ok(plan.apply(at)),
             Self::Earth(projection) => projection.apply(at),
@@ -295,15 +296,36 @@ pub(super) fn parameter<'j>(parameters: Option<&'j JsonNode<'j>>, name: &str) ->
     Some(given.as_array().and_then(|typed| typed.get(1)).unwrap_or(given))
 }
 
+/// Why ends are none.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) enum EndsError {
+    /// They are not in a list.
+    List,
+    /// They are not two numbers of vertices.
+    Numbers,
+    /// There is no vertex of this number.
+    Vertex(u64),
+}
+
+impl fmt::Display for EndsError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::List => f.write_str("not a list"),
+            Self::Numbers => f.write_str("two numbers of vertices are expected"),
+            Self::Vertex(place) => write!(f, "there is no vertex {place}"),
+        }
+    }
+}
+
 /// Ends of a lane, a wall or a measurement.
-pub(super) fn ends(value: &JsonNode<'_>, vertices: &[PlacedVertex]) -> Result<[(usize, [f64; 2]); 2], String> {
-    let list = value.as_array().ok_or("not a list")?;
+pub(super) fn ends(value: &JsonNode<'_>, vertices: &[PlacedVertex]) -> Result<[(usize, [f64; 2]); 2], EndsError> {
+    let list = value.as_array().ok_or(EndsError::List)?;
     let mut ends = [(0, [0.0; 2]); 2];
     for (k, end) in ends.iter_mut().enumerate() {
-        let place = list.get(k).and_then(JsonNode::as_u64).ok_or("two numbers of vertices are expected")?;
+        let place = list.get(k).and_then(JsonNode::as_u64).ok_or(EndsError::Numbers)?;
         let vertex =
             usize::try_from(place).ok().and_then(|place| vertices.get(place)?.as_ref().map(|vertex| (place, vertex.0)));
-        *end = vertex.ok_or(format!("there is no vertex {place}"))?;
+        *end = vertex.ok_or(EndsError::Vertex(place))?;
     }
     Ok(ends)
 }

@@ -13,13 +13,14 @@ use super::keys::Keys;
 use super::layout::{ElementId, Layout, LayoutEdge, LayoutNode};
 use super::polynomial::{self, Cubic};
 use super::route::turn_over;
-use super::unique_names::UniqueNames;
+use super::unique_names::{NameError, UniqueNames};
 use super::xml::{child, children, lose_astray, number, only, optional, parse, warn_of_unknown};
 use super::{ImportError, ImportOptions, WarningCode, Warnings};
 use crate::plane_geometry::{distance, wrapped};
 use crate::scenario::{LIMIT, PathSegment, PlacedSegment};
 use std::collections::HashMap;
 use std::f64::consts::TAU;
+use std::fmt;
 
 /// Gap \[m\] and angle \[rad\] of a joint that are rounding and nothing else.
 const CLOSED: f64 = 1e-9;
@@ -364,6 +365,26 @@ struct RoadLinks {
     widest: f64,
 }
 
+/// Why a link of a road is broken.
+enum LinkError {
+    /// The road that it leads to is not there, or there twice.
+    Road(NameError),
+    /// Its elementType is none that is known.
+    ElementType,
+    /// It does not say which end of the road.
+    NoContactPoint,
+}
+
+impl fmt::Display for LinkError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Road(error) => error.fmt(f),
+            Self::ElementType => f.write_str("its elementType is not road and not junction"),
+            Self::NoContactPoint => f.write_str("it has no contactPoint"),
+        }
+    }
+}
+
 /// For each end of a road, by 2 × road and one more for its end, the end that stands for all that are linked to it and meet it.
 fn groups(
     roads: &UniqueNames<LayoutEdge>,
@@ -388,9 +409,9 @@ fn groups(
                 Some("junction") => continue,
                 Some("road") => {
                     let other = roads.index_of(&named(linked.attribute("elementId").unwrap_or_default()));
-                    other.map_err(|unclear| unclear.to_string())
+                    other.map_err(LinkError::Road)
                 }
-                _ => Err("its elementType is not road and not junction".to_owned()),
+                _ => Err(LinkError::ElementType),
             };
             match (other, linked.attribute("contactPoint")) {
                 (Ok(road), Some(point @ ("start" | "end"))) => {
@@ -405,7 +426,7 @@ fn groups(
                     }
                 }
                 (other, _) => {
-                    let problem = other.err().unwrap_or_else(|| "it has no contactPoint".to_owned());
+                    let problem = other.err().unwrap_or(LinkError::NoContactPoint);
                     let road = roads.list()[place].id.clone();
                     warnings.add(
                         WarningCode::BrokenLink,

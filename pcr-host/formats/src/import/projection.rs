@@ -5,6 +5,8 @@
 //! than 5 nm, and a coordinate of 1e7 m is rounded to some nanometres: the sum is less than [`ERROR`]. The ellipsoids of WGS 84 and of
 //! GRS 80 count as the same datum, which is what PROJ does if nothing else is asked for.
 
+use std::fmt;
+
 /// Bound on the error of a coordinate \[m\].
 #[cfg(test)]
 const ERROR: f64 = 2e-8;
@@ -95,13 +97,34 @@ impl TransverseMercator {
     }
 }
 
+/// Why a projection is not known, or does not reach a point.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) enum ProjectionError {
+    /// The one of this name is not read.
+    Unknown(String),
+    /// A longitude and a latitude are out of range \[degrees\].
+    OutOfRange([f64; 2]),
+}
+
+impl fmt::Display for ProjectionError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Unknown(name) => write!(f, "{name} is not read; {KNOWN} are"),
+            Self::OutOfRange([longitude, latitude]) => write!(
+                f,
+                "longitude {longitude}, latitude {latitude}: out of range of the projection of its building, in degrees"
+            ),
+        }
+    }
+}
+
 impl Projection {
     /// The one of a name such as `EPSG:3414`.
     ///
     /// # Errors
-    /// A message if it is not known.
-    pub(super) fn named(name: &str) -> Result<Self, String> {
-        let unknown = || format!("{name} is not read; {KNOWN} are");
+    /// [`ProjectionError::Unknown`].
+    pub(super) fn named(name: &str) -> Result<Self, ProjectionError> {
+        let unknown = || ProjectionError::Unknown(name.to_owned());
         let code = name.trim().to_ascii_uppercase();
         let code: u32 = code.strip_prefix("EPSG:").and_then(|code| code.parse().ok()).ok_or_else(unknown)?;
         let zone = |first: u32| 6.0 * f64::from(code - first) - 183.0;
@@ -132,17 +155,15 @@ impl Projection {
     /// The point of a longitude and a latitude \[degrees\] in the coordinates of Open-RMF \[m\].
     ///
     /// # Errors
-    /// A message if it is out of range.
-    pub(super) fn apply(&self, at: [f64; 2]) -> Result<[f64; 2], String> {
+    /// [`ProjectionError::OutOfRange`].
+    pub(super) fn apply(&self, at: [f64; 2]) -> Result<[f64; 2], ProjectionError> {
         let [longitude, latitude] = at;
         let is_near = match &self.plane {
             Plane::WebMercator => true,
             Plane::TransverseMercator(series) => (longitude - series.meridian).abs() <= FARTHEST,
         };
         if !(-180.0..=180.0).contains(&longitude) || !(-POLAR..=POLAR).contains(&latitude) || !is_near {
-            return Err(format!(
-                "longitude {longitude}, latitude {latitude}: out of range of the projection of its building, in degrees"
-            ));
+            return Err(ProjectionError::OutOfRange(at));
         }
         let [easting, northing] = match &self.plane {
             Plane::TransverseMercator(series) => series.project(at),
@@ -203,11 +224,12 @@ mod tests {
     #[test]
     fn what_is_out_of_range_is_refused() {
         for name in ["EPSG:4326", "EPSG:32600", "EPSG:32661", "3414", "EPSG:x", ""] {
-            assert!(Projection::named(name).unwrap_err().contains("is not read; EPSG:326xx"), "{name}");
+            let unknown = Projection::named(name).unwrap_err().to_string();
+            assert!(unknown.contains("is not read; EPSG:326xx"), "{name}");
         }
         let singapore = Projection::named("EPSG:3414").unwrap();
         for at in [[8.5, 47.0], [103.8, 91.0], [f64::NAN, 1.0], [119.0, 1.0], [103.8, -86.0]] {
-            assert!(singapore.apply(at).unwrap_err().contains("out of range"), "{at:?}");
+            assert!(matches!(singapore.apply(at), Err(ProjectionError::OutOfRange(_))), "{at:?}");
         }
     }
 }

@@ -10,8 +10,8 @@
 use super::json_access::JsonObject;
 use super::keys::Keys;
 use super::layout::{ElementId, Layout, LayoutEdge, LayoutNode};
-use super::levels::{self, LevelTransform, ReferenceLevel, ends, parameter};
-use super::projection::Projection;
+use super::levels::{self, EndsError, LevelTransform, ReferenceLevel, ends, parameter};
+use super::projection::{Projection, ProjectionError};
 use super::vehicle::{Facing, FileVehicleTraits};
 use super::{ImportError, ImportOptions, WarningCode, Warnings};
 use crate::footprint::Footprint;
@@ -19,6 +19,7 @@ use crate::json::JsonNode;
 use crate::scenario::PlacedSegment;
 use crate::yaml::YamlDocument;
 use std::collections::{BTreeSet, HashMap};
+use std::fmt;
 
 const ROOT: Keys = Keys::new(
     &["levels", "name", "building_name", "coordinate_system", "reference_level_name", "lifts", "rmf_fleet"],
@@ -225,6 +226,51 @@ enum RmfFrame<'j> {
     Earth(Projection),
 }
 
+/// Why a lane is left out.
+#[derive(Clone, Debug, PartialEq)]
+enum LaneError {
+    /// Its parameters are no object, but this.
+    NoObject(String),
+    /// Its parameters have a key that is not read here.
+    Parameters(ImportError),
+    /// A parameter of this name has a value that is not read.
+    NotRead(&'static str, String),
+    /// Its ends are none.
+    Ends(EndsError),
+    /// An end is out of range.
+    Projection(ProjectionError),
+}
+
+impl fmt::Display for LaneError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::NoObject(other) => write!(f, "its parameters {other} are not read"),
+            Self::Parameters(error) => f.write_str(error.problem()),
+            Self::NotRead(name, value) => write!(f, "{name}: {value} is not read"),
+            Self::Ends(error) => error.fmt(f),
+            Self::Projection(error) => error.fmt(f),
+        }
+    }
+}
+
+impl From<ImportError> for LaneError {
+    fn from(error: ImportError) -> Self {
+        Self::Parameters(error)
+    }
+}
+
+impl From<EndsError> for LaneError {
+    fn from(error: EndsError) -> Self {
+        Self::Ends(error)
+    }
+}
+
+impl From<ProjectionError> for LaneError {
+    fn from(error: ProjectionError) -> Self {
+        Self::Projection(error)
+    }
+}
+
 /// The projection of a building with longitudes and latitudes: that of its `generate_crs`, as its building tools use it.
 fn earth(
     root: &JsonObject<'_>,
@@ -232,16 +278,17 @@ fn earth(
     warnings: &mut Warnings,
 ) -> Result<Projection, ImportError> {
     let parameters = root.object("parameters")?.ok_or_else(|| root.missing("parameters"))?;
-    let refused = |problem: String| parameters.field_error("generate_crs", problem);
+    let refused = |problem: &dyn fmt::Display| parameters.field_error("generate_crs", problem);
     let value = parameters.get("generate_crs").ok_or_else(|| parameters.missing("generate_crs"))?;
     let name = value.element(1).unwrap_or(value);
-    let name = name.as_str().ok_or_else(|| refused(format!("{name} where a name such as EPSG:3414 is expected")))?;
-    let projection = Projection::named(name).map_err(refused)?;
+    let name =
+        name.as_str().ok_or_else(|| refused(&format_args!("{name} where a name such as EPSG:3414 is expected")))?;
+    let projection = Projection::named(name).map_err(|unknown| refused(&unknown))?;
     if projection.is_mirrored() {
         if outline.is_some() {
             let problem = "the building tools exchange easting and northing of this system, so that left and right are exchanged, too; a \
                            contour is refused, give its --radius";
-            return Err(refused(format!("{name}: {problem}")));
+            return Err(refused(&format_args!("{name}: {problem}")));
         }
         let problem = "the building tools take its easting for a northing and its northing for an easting; coordinates here are theirs";
         warnings.add(WarningCode::MirroredAxes, name, problem);
@@ -286,18 +333,17 @@ impl RmfLevel<'_> {
         options: &ImportOptions,
         graphs: &mut BTreeSet<u64>,
         warnings: &mut Warnings,
-    ) -> Result<Option<(WarningCode, &'static str)>, String> {
+    ) -> Result<Option<(WarningCode, &'static str)>, LaneError> {
         let parameters = value.element(2).filter(|parameters| !parameters.is_null());
         if let Some(odd) = parameters.filter(|parameters| !parameters.is_object()) {
-            return Err(format!("its parameters {odd} are not read"));
+            return Err(LaneError::NoObject(odd.to_string()));
         }
         if let Some(parameters) = parameters {
             // A message of a lane names it anyway.
-            let parameters =
-                JsonObject::new("its parameters", parameters).map_err(|error| error.problem().to_owned())?;
+            let parameters = JsonObject::new("its parameters", parameters)?;
             let mut odd = Warnings::default();
             let keys = if self.graph { GRAPH_LANE } else { LANE };
-            keys.check(&parameters, &mut odd).map_err(|error| error.problem().to_owned())?;
+            keys.check(&parameters, &mut odd)?;
             odd.iter().for_each(|(code, problem, _)| {
                 warnings.add(code, format_args!("lane {}/{k}", self.source.name), problem)
             });
@@ -305,10 +351,10 @@ impl RmfLevel<'_> {
         // A parameter that is there and has the wrong type is not left aside.
         fn typed<T>(
             value: Option<&JsonNode<'_>>,
-            name: &str,
+            name: &'static str,
             read: impl Fn(&JsonNode<'_>) -> Option<T>,
-        ) -> Result<Option<T>, String> {
-            let read = |value| read(value).ok_or_else(|| format!("{name}: {value} is not read"));
+        ) -> Result<Option<T>, LaneError> {
+            let read = |value| read(value).ok_or_else(|| LaneError::NotRead(name, value.to_string()));
             parameter(value, name).map(read).transpose()
         }
         let graph = typed(parameters, "graph_idx", |value| value.as_u64())?.unwrap_or(0);
@@ -333,7 +379,7 @@ impl RmfLevel<'_> {
                 None | Some("") => facing,
                 Some("forward") => [Facing::Ahead, Facing::Either],
                 Some("backward") => [Facing::Backward, Facing::Either],
-                Some(other) => return Err(format!("{field}: {other} is not read")),
+                Some(other) => return Err(LaneError::NotRead(field, other.to_owned())),
             };
         }
         // 0 is what the editor writes where there is no limit.

@@ -199,25 +199,48 @@ pub struct ImportOptions {
 /// Largest value of an option: beyond it nothing is a vehicle.
 const MOST: f64 = 1e6;
 
+/// What is expected as the value of an option.
 #[cfg(feature = "clap")]
-fn not_negative(text: &str) -> Result<f64, String> {
+#[derive(Clone, Copy, Debug, PartialEq)]
+enum OptionError {
+    NotNegative,
+    Positive,
+    Index,
+}
+
+#[cfg(feature = "clap")]
+impl std::fmt::Display for OptionError {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        match self {
+            Self::NotNegative => write!(f, "a number from 0 to {MOST:e} is expected"),
+            Self::Positive => write!(f, "a number from {:e} to {MOST:e} is expected", 1.0 / MOST),
+            Self::Index => f.write_str("a whole number from 0 is expected"),
+        }
+    }
+}
+
+#[cfg(feature = "clap")]
+impl std::error::Error for OptionError {}
+
+#[cfg(feature = "clap")]
+fn not_negative(text: &str) -> Result<f64, OptionError> {
     match text.parse::<f64>() {
         Ok(number) if (0.0..=MOST).contains(&number) => Ok(number),
-        _ => Err(format!("a number from 0 to {MOST:e} is expected")),
+        _ => Err(OptionError::NotNegative),
     }
 }
 
 #[cfg(feature = "clap")]
-fn positive(text: &str) -> Result<f64, String> {
+fn positive(text: &str) -> Result<f64, OptionError> {
     match not_negative(text) {
         Ok(number) if number >= 1.0 / MOST => Ok(number),
-        _ => Err(format!("a number from {:e} to {MOST:e} is expected", 1.0 / MOST)),
+        _ => Err(OptionError::Positive),
     }
 }
 
 #[cfg(feature = "clap")]
-fn index(text: &str) -> Result<u64, String> {
-    text.parse().map_err(|_| "a whole number from 0 is expected".to_owned())
+fn index(text: &str) -> Result<u64, OptionError> {
+    text.parse().map_err(|_| OptionError::Index)
 }
 
 impl ImportOptions {

@@ -4,6 +4,49 @@ use super::version::ProtocolVersion;
 use serde::{Deserialize, Serialize};
 use std::fmt;
 
+/// Why a text cannot be part of a topic.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct TopicError {
+    /// Which part of the topic.
+    pub field: &'static str,
+    /// The text.
+    pub text: String,
+    /// What is wrong with it, or with one of its levels.
+    pub fault: LevelFault,
+}
+
+/// What is wrong with a level of a topic.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum LevelFault {
+    /// It is empty.
+    Empty,
+    /// It has more than 90 bytes.
+    TooLong,
+    /// It has a character with a meaning in topics.
+    Reserved,
+    /// It has a control character.
+    Control,
+}
+
+impl fmt::Display for LevelFault {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(match self {
+            Self::Empty => "empty",
+            Self::TooLong => "more than 90 bytes",
+            Self::Reserved => "/, +, # and $ mean something else in topics",
+            Self::Control => "control characters",
+        })
+    }
+}
+
+impl fmt::Display for TopicError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{} {:?}: {}", self.field, self.text, self.fault)
+    }
+}
+
+impl std::error::Error for TopicError {}
+
 /// A vehicle, by manufacturer and serial number.
 #[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
 #[serde(rename_all = "camelCase", deny_unknown_fields)]
@@ -19,9 +62,9 @@ impl VehicleId {
     ///
     /// # Errors
     /// The part that cannot be a level of a topic, and why.
-    pub fn new(manufacturer: &str, serial_number: &str) -> Result<Self, String> {
+    pub fn new(manufacturer: &str, serial_number: &str) -> Result<Self, TopicError> {
         for (field, part) in [("manufacturer", manufacturer), ("serialNumber", serial_number)] {
-            level(part).map_err(|why| format!("{field} {part:?}: {why}"))?;
+            level(part).map_err(|fault| TopicError { field, text: part.to_owned(), fault })?;
         }
         Ok(Self { manufacturer: manufacturer.into(), serial_number: serial_number.into() })
     }
@@ -34,12 +77,12 @@ impl fmt::Display for VehicleId {
 }
 
 /// Checks a level of a topic.
-fn level(text: &str) -> Result<(), &'static str> {
+fn level(text: &str) -> Result<(), LevelFault> {
     match text {
-        "" => Err("empty"),
-        text if text.len() > 90 => Err("more than 90 bytes"),
-        text if text.contains(['/', '+', '#', '$']) => Err("/, +, # and $ mean something else in topics"),
-        text if text.chars().any(char::is_control) => Err("control characters"),
+        "" => Err(LevelFault::Empty),
+        text if text.len() > 90 => Err(LevelFault::TooLong),
+        text if text.contains(['/', '+', '#', '$']) => Err(LevelFault::Reserved),
+        text if text.chars().any(char::is_control) => Err(LevelFault::Control),
         _ => Ok(()),
     }
 }
@@ -132,9 +175,9 @@ impl TopicInterface {
     ///
     /// # Errors
     /// The level that cannot be part of a topic, and why.
-    pub fn new(prefix: &str) -> Result<Self, String> {
+    pub fn new(prefix: &str) -> Result<Self, TopicError> {
         for part in prefix.split('/') {
-            level(part).map_err(|why| format!("prefix {prefix:?}: {why}"))?;
+            level(part).map_err(|fault| TopicError { field: "prefix", text: prefix.to_owned(), fault })?;
         }
         Ok(Self { prefix: prefix.into() })
     }

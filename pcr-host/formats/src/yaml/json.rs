@@ -121,7 +121,8 @@ impl<'d, 't> AliasResolver<'d, 't> {
                 if self.as_texts {
                     JsonData::Text(if is_nothing(node, text) { NULL } else { &**text }.into())
                 } else {
-                    let value = scalar::value(node.kind, text).map_err(|problem| self.error(node, problem))?;
+                    let value =
+                        scalar::value(node.kind, text).map_err(|problem| self.error(node, problem.to_string()))?;
                     JsonNode::from_value(value, Position::START).data
                 }
             }

@@ -6,9 +6,28 @@
 
 use super::ScalarTag;
 use serde_json::{Number, Value};
+use std::fmt;
+
+/// Why a scalar has no value.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) enum ScalarError {
+    /// It is not what its tag tells.
+    NotItsTag(String),
+    /// It is not a finite number.
+    NotFinite(String),
+}
+
+impl fmt::Display for ScalarError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::NotItsTag(text) => write!(f, "{text:?} is not what its tag tells"),
+            Self::NotFinite(text) => write!(f, "{text} is not a finite number"),
+        }
+    }
+}
 
 /// The value of a scalar, or why it has none.
-pub(super) fn value(kind: ScalarTag, text: &str) -> Result<Value, String> {
+pub(super) fn value(kind: ScalarTag, text: &str) -> Result<Value, ScalarError> {
     // Blanks can only be around what is in quotes.
     let inner = text.trim_matches([' ', '\t', '\r', '\n']);
     let read = match kind {
@@ -20,10 +39,10 @@ pub(super) fn value(kind: ScalarTag, text: &str) -> Result<Value, String> {
         ScalarTag::Float => float(inner)?.map(Value::Number),
         ScalarTag::Sequence | ScalarTag::Mapping => None,
     };
-    read.ok_or_else(|| format!("{text:?} is not what its tag tells"))
+    read.ok_or_else(|| ScalarError::NotItsTag(text.to_owned()))
 }
 
-fn plain(text: &str) -> Result<Value, String> {
+fn plain(text: &str) -> Result<Value, ScalarError> {
     if text.starts_with(|first: char| first.is_ascii_digit() || matches!(first, '+' | '-' | '.')) {
         let number = match integer(text) {
             Some(number) => Some(number),
@@ -78,9 +97,9 @@ pub(super) fn integer(text: &str) -> Option<Number> {
 }
 
 /// A finite number; `None` for what is none.
-fn float(text: &str) -> Result<Option<Number>, String> {
+fn float(text: &str) -> Result<Option<Number>, ScalarError> {
     let unsigned = text.strip_prefix(['+', '-']).unwrap_or(text);
-    let not_finite = || format!("{text} is not a finite number");
+    let not_finite = || ScalarError::NotFinite(text.to_owned());
     if [".inf", ".nan"].iter().any(|name| unsigned.eq_ignore_ascii_case(name)) {
         return Err(not_finite());
     }
@@ -126,7 +145,7 @@ mod tests {
         }
         assert_eq!(value(ScalarTag::Any, ""), Ok(Value::Null));
         for text in ".inf -.INF +.inf .nan 1e999 -1e999 .1e999".split(' ') {
-            assert_eq!(value(ScalarTag::Any, text), Err(format!("{text} is not a finite number")));
+            assert_eq!(value(ScalarTag::Any, text), Err(ScalarError::NotFinite(text.to_owned())));
         }
     }
 
@@ -145,7 +164,7 @@ mod tests {
         for (kind, text) in
             [(ScalarTag::Integer, "1.5"), (ScalarTag::Float, "x"), (ScalarTag::Flag, "1"), (ScalarTag::Integer, "")]
         {
-            assert_eq!(value(kind, text), Err(format!("{text:?} is not what its tag tells")));
+            assert_eq!(value(kind, text), Err(ScalarError::NotItsTag(text.to_owned())));
         }
         assert!(value(ScalarTag::Float, ".nan").is_err());
     }

@@ -118,7 +118,8 @@ fn profile(value: &Value) -> Result<VehicleConfig, String> {
         None => true,
         Some(split) => split.as_bool().ok_or("split: true or false is expected")?,
     };
-    Ok(VehicleConfig { key: VehicleId::new(text("manufacturer")?, text("serialNumber")?)?, abilities, split })
+    let key = VehicleId::new(text("manufacturer")?, text("serialNumber")?).map_err(|wrong| wrong.to_string())?;
+    Ok(VehicleConfig { key, abilities, split })
 }
 
 /// Whether the journal knows the vehicles as the file does: orders were made for discs as they were.

@@ -9,6 +9,7 @@ use super::super::xml::{children, only, optional, parse};
 use super::super::{ImportError, ImportOptions, LayoutEdge, WarningCode, Warnings};
 use super::{MILLI, metres};
 use crate::footprint::Footprint;
+use std::fmt;
 
 /// How far a vehicle reaches ahead and aside of its reference point \[m\].
 type HalfExtents = [f64; 2];
@@ -66,6 +67,24 @@ fn named(vehicle: roxmltree::Node<'_, '_>) -> String {
     format!("vehicle {}", vehicle.attribute("name").unwrap_or_default())
 }
 
+/// What is wrong with the box of a vehicle.
+struct BoxError {
+    vehicle: String,
+    field: &'static str,
+    /// Its value, if it is there.
+    size: Option<f64>,
+}
+
+impl fmt::Display for BoxError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{}, boundingBox, {}: ", self.vehicle, self.field)?;
+        match self.size {
+            None => f.write_str("missing"),
+            Some(size) => write!(f, "{size} where a number above 0 is expected"),
+        }
+    }
+}
+
 /// A vehicle of the model.
 struct OpenTcsVehicle {
     name: String,
@@ -73,7 +92,7 @@ struct OpenTcsVehicle {
     /// Before version 6 \[m\].
     length: Option<f64>,
     /// Its box, or what is wrong with it; `None` where it has none.
-    half: Option<Result<HalfExtents, String>>,
+    half: Option<Result<HalfExtents, BoxError>>,
     /// Whether its box says where its reference point is.
     is_placed: bool,
 }
@@ -95,7 +114,7 @@ impl OpenTcsVehicle {
 struct Sizes([[Option<f64>; 2]; 2]);
 
 impl Sizes {
-    const NAMES: [[&str; 2]; 2] = [["length", "referenceOffsetX"], ["width", "referenceOffsetY"]];
+    const NAMES: [[&'static str; 2]; 2] = [["length", "referenceOffsetX"], ["width", "referenceOffsetY"]];
 
     fn new(outline: roxmltree::Node<'_, '_>, name: &str) -> Result<Self, ImportError> {
         let name = format!("{name}, boundingBox");
@@ -107,15 +126,12 @@ impl Sizes {
     }
 
     /// Half of the rectangle around the box, or what is wrong with that.
-    fn half(&self, name: &str) -> Result<HalfExtents, String> {
+    fn half(&self, name: &str) -> Result<HalfExtents, BoxError> {
         let mut half = [0.0; 2];
         for (half, ([size, offset], [field, _])) in half.iter_mut().zip(self.0.into_iter().zip(Self::NAMES)) {
             *half = match size {
-                None => return Err(format!("{name}, boundingBox, {field}: missing")),
-                Some(size) if size <= 0.0 => {
-                    return Err(format!("{name}, boundingBox, {field}: {size} where a number above 0 is expected"));
-                }
-                Some(size) => MILLI * (0.5 * size + offset.unwrap_or(0.0).abs()),
+                Some(size) if size > 0.0 => MILLI * (0.5 * size + offset.unwrap_or(0.0).abs()),
+                size => return Err(BoxError { vehicle: name.to_owned(), field, size }),
             };
         }
         Ok(half)
