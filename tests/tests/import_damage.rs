@@ -1,6 +1,7 @@
 //! Damaged files: every importer gives an error or a result, and never panics or hangs.
 
 use pcr_formats::import::{ImportOptions, InputFormat, Warnings, layout, scenario};
+use pcr_formats::splitmix64::SplitMix64;
 use pcr_planning::exclusion_table::ExclusionTable;
 use pcr_planning::fleet::Fleet;
 use serde_json::{Value, json};
@@ -46,16 +47,6 @@ fn read(format: InputFormat, text: &str) {
     assert!(warnings.lines().iter().all(|line| !line.is_empty()));
 }
 
-/// Numbers that look random and are the same in every run.
-struct Dice(u64);
-
-impl Dice {
-    fn below(&mut self, bound: usize) -> usize {
-        self.0 = self.0.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
-        ((self.0 >> 33) as usize) % bound.max(1)
-    }
-}
-
 #[test]
 fn files_that_end_early() {
     for (format, text) in FILES {
@@ -68,7 +59,7 @@ fn files_that_end_early() {
 
 #[test]
 fn files_with_other_bytes() {
-    let mut dice = Dice(1);
+    let mut dice = SplitMix64(1);
     let bytes = b"0129-+.eE\"{}[],:<>/=&; \nNa\0\xf0";
     for (format, text) in FILES {
         for _ in 0..150 {
@@ -107,7 +98,7 @@ fn places(value: &Value, at: &str, into: &mut Vec<String>) {
 
 #[test]
 fn json_with_other_values() {
-    let mut dice = Dice(2);
+    let mut dice = SplitMix64(2);
     for (format, text) in FILES {
         let Ok(value) = serde_json::from_str::<Value>(text) else { continue };
         let mut all = Vec::new();

@@ -140,6 +140,7 @@ impl DirectedEdgeRules {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use pcr_formats::splitmix64::SplitMix64;
 
     #[test]
     fn an_edge_without_length_is_one_section() {
@@ -151,18 +152,15 @@ mod tests {
 
     #[test]
     fn sections_between_two_ways_exclude_as_all_of_them_do() {
-        let mut state = 9_u64;
-        let mut below = |most: u64| {
-            state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
-            (state >> 33) % most
-        };
+        let mut random = SplitMix64(9);
+        let mut below = |most: usize| random.below(most);
         let mut excluded = 0;
         for _ in 0..300 {
             let mut way = |closes: bool| {
                 let mark = |_| {
                     let (from, long) = (below(10), below(6));
                     let range = [from as f64, (from + long) as f64];
-                    TokenSpan { token: below(5) as usize, bars: below(2) == 0, range }
+                    TokenSpan { token: below(5), bars: below(2) == 0, range }
                 };
                 let marks = (0..8).map(mark).collect();
                 let [ahead, _] =

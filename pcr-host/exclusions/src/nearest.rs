@@ -181,6 +181,7 @@ fn length_near(piece: &PlacedSegment, at: [f64; 2]) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use pcr_formats::splitmix64::SplitMix64;
 
     #[test]
     fn the_nearest_points_are_those_of_samples() {
@@ -212,11 +213,8 @@ mod tests {
             heading,
             shape: PathSegment::Arc { radius, sweep },
         };
-        let mut seed = 1_u64;
-        let mut any = || {
-            seed = seed.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
-            (seed >> 11) as f64 / (1_u64 << 53) as f64
-        };
+        let mut random = SplitMix64(1);
+        let mut any = || random.unit();
         let mut piece = |k: usize| match k % 4 {
             0 => PlacedSegment::line([8.0 * any(), 8.0 * any()], [8.0 * any(), 8.0 * any()]),
             1 => arc([8.0 * any(), 8.0 * any()], 7.0 * any(), 0.2 + 3.0 * any(), 7.0 * any() - 3.5),

@@ -123,6 +123,7 @@ pub fn share(part: f64) -> String {
 #[cfg(test)]
 mod tests {
     use super::{above, below, exact, given, outward, outward_but_for_rounding, seconds, share, small, thousandths};
+    use pcr_formats::splitmix64::SplitMix64;
 
     #[test]
     fn sums_are_told_as_they_were_given() {
@@ -171,10 +172,9 @@ mod tests {
 
     #[test]
     fn what_is_printed_contains_what_it_is_about() {
-        let mut state = 1_u64;
+        let mut random = SplitMix64(1);
         for _ in 0..200_000 {
-            state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
-            let value = f64::from_bits(state);
+            let value = f64::from_bits(random.bits());
             // Numbers of all magnitudes, and many of those that lengths and times have.
             let usual = (value.to_bits() >> 40) as f64 / 1_048_576.0 - 4.0;
             for value in [value, usual, usual * 1e4].into_iter().filter(|value| !value.is_nan()) {

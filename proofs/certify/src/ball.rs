@@ -352,11 +352,7 @@ impl<R: BallReal> Ball<R> {
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    fn dice(state: &mut u64) -> f64 {
-        *state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
-        (*state >> 11) as f64 / (1_u64 << 53) as f64
-    }
+    use crate::dice::Dice;
 
     fn contains(ball: Ball<f64>, exact: DoubleDouble) -> bool {
         (exact - DoubleDouble::from(ball.mid)).abs().to_f64() <= ball.err
@@ -364,13 +360,13 @@ mod tests {
 
     #[test]
     fn balls_of_53_bits_hold_what_106_bits_find() {
-        let mut state = 1;
+        let mut dice = Dice(1);
         for _ in 0..100_000 {
             let [a, b] = [(); 2].map(|()| {
-                let (size, part) = ((dice(&mut state) * 40.0).exp2(), dice(&mut state) - 0.5);
+                let (size, part) = ((dice.unit() * 40.0).exp2(), dice.unit() - 0.5);
                 size * part
             });
-            let offs = [a, b].map(|x| x * (dice(&mut state) - 0.5) * (-60.0 * dice(&mut state)).exp2());
+            let offs = [a, b].map(|x| x * (dice.unit() - 0.5) * (-60.0 * dice.unit()).exp2());
             let exact = [0, 1].map(|k| DoubleDouble::from([a, b][k]) + DoubleDouble::from(offs[k]));
             let balls = [0, 1].map(|k| Ball { mid: [a, b][k], err: offs[k].abs() });
             let [x, y] = balls;
@@ -388,10 +384,10 @@ mod tests {
 
     #[test]
     fn sines_stay_within_an_eighth_of_their_bound_and_the_bound() {
-        let mut state = 2;
+        let mut dice = Dice(2);
         let mut worst = 0.0_f64;
         for _ in 0..400_000 {
-            let x = 16.0 * (2.0 * dice(&mut state) - 1.0);
+            let x = 16.0 * (2.0 * dice.unit() - 1.0);
             let ((sin, cos), exact) = (sin_cos(x), DoubleDouble::from(x).sin_cos());
             for (near, exact) in [(sin, exact.0), (cos, exact.1)] {
                 worst = worst.max((exact - DoubleDouble::from(near)).abs().to_f64());
@@ -404,7 +400,7 @@ mod tests {
     #[test]
     fn quotients_and_roots_of_what_is_all_but_nothing_are_right() {
         fn hold<R: BallReal>(least: i32) {
-            let mut state = 3;
+            let mut dice = Dice(3);
             let within = |ball: Ball<R>, exact: DoubleDouble| {
                 let mid = Ball::from_twofold(Ball { mid: exact, err: 0.0 });
                 let off = (ball - mid).mid.to_f64().abs();
@@ -413,8 +409,8 @@ mod tests {
                 ball.err
             };
             for _ in 0..20_000 {
-                let [a, b] = [(); 2].map(|()| (1.0 + (dice(&mut state) * 30.0).exp2()).floor());
-                let exponent = least + (2.0 * dice(&mut state) * 100.0) as i32 / 2 * 2;
+                let [a, b] = [(); 2].map(|()| (1.0 + (dice.unit() * 30.0).exp2()).floor());
+                let exponent = least + (2.0 * dice.unit() * 100.0) as i32 / 2 * 2;
                 let tiny =
                     |number: f64| Ball::<R>::from(number * 2.0_f64.powi(exponent / 2) * 2.0_f64.powi(exponent / 2));
                 within(tiny(a) / tiny(b), DoubleDouble::from(a) / DoubleDouble::from(b));

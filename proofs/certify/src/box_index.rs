@@ -100,6 +100,7 @@ pub(crate) fn area(stretches: &[PreparedSegment], reach: f64) -> PlainBox {
 #[cfg(test)]
 mod tests {
     use super::{BoxIndex, PlainBox, meet};
+    use crate::dice::Dice;
 
     #[test]
     fn all_boxes_that_meet_are_found() {
@@ -109,11 +110,8 @@ mod tests {
         // Their row is -0, unless it is made 0, and begins with their left sides where that of the others ends.
         let zeros = [[5.0, -0.0, 6.0, 1.0], [6.0, -5e-324, 7.0, 1.0], [7.0, 0.0, 8.0, 1.0]];
         for (count, others) in [(0, &[][..]), (400, &[]), (400, &zeros), (400, &far), (400, &endless), (0, &endless)] {
-            let mut bits = 1_u64;
-            let mut random = || {
-                bits = bits.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
-                (bits >> 40) as f64 / (1 << 20) as f64
-            };
+            let mut dice = Dice(1);
+            let mut random = || dice.between(0.0, 16.0);
             let mut areas: Vec<PlainBox> = (0..count)
                 .map(|k| {
                     // Sides on whole numbers touch, and some boxes are points.

@@ -404,6 +404,7 @@ impl<R: BallReal> Quadratic<R> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::dice::Dice;
     use crate::raw::{RawAngle, RawMotion, RawPath, RawPhase, RawSegment};
     use std::f64::consts::FRAC_1_SQRT_2;
 
@@ -496,12 +497,12 @@ mod tests {
 
     #[test]
     fn the_least_of_a_quadratic_is_below_all_of_it_and_reached_by_convex_ones() {
-        let mut state = 5;
+        let mut dice = Dice(5);
         let mut reached = 0;
         for _ in 0..400 {
-            let [one, t, s, tt, ts, ss] = core::array::from_fn(|_| 4.0 * dice(&mut state) - 2.0);
-            let tt = if dice(&mut state) < 0.7 { tt.abs() } else { tt };
-            let (k, h) = (0.1 + dice(&mut state), if dice(&mut state) < 0.5 { 0.0 } else { dice(&mut state) });
+            let [one, t, s, tt, ts, ss] = core::array::from_fn(|_| 4.0 * dice.unit() - 2.0);
+            let tt = if dice.unit() < 0.7 { tt.abs() } else { tt };
+            let (k, h) = (0.1 + dice.unit(), if dice.unit() < 0.5 { 0.0 } else { dice.unit() });
             let value = |x: f64, y: f64| one + t * x + s * y + tt * x * x + ts * x * y + ss * y * y;
             let at = |place: i32, most: f64| most * f64::from(place) / 40.0;
             let all = (-40..=40).flat_map(|x| (-40..=40).map(move |y| (x, y)));
@@ -533,21 +534,16 @@ mod tests {
         assert_eq!([0, 1, 2, 3].map(|one| near.after(one)), [vec![1, 3], vec![3], vec![3], vec![]]);
     }
 
-    fn dice(state: &mut u64) -> f64 {
-        *state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
-        (*state >> 11) as f64 / (1_u64 << 53) as f64
-    }
-
     /// Lines and arcs near the origin, from rest to rest, with a phase that lasts no longer than a rounding.
-    fn bent(state: &mut u64, id: u64) -> RawAgent {
+    fn bent(dice: &mut Dice, id: u64) -> RawAgent {
         let (mut from, mut segments) = (0.0, Vec::new());
         for _ in 0..3 {
-            let (length, bend) = (0.2 + 2.0 * dice(state), dice(state) - 0.5);
-            let radius = Some((0.4 + dice(state)).copysign(bend)).filter(|_| dice(state) < 0.6);
+            let (length, bend) = (0.2 + 2.0 * dice.unit(), dice.unit() - 0.5);
+            let radius = Some((0.4 + dice.unit()).copysign(bend)).filter(|_| dice.unit() < 0.6);
             segments.push(RawSegment { length, radius, turns: Vec::new(), from, to: from + length });
             from += length;
         }
-        let (half, middle) = (1.0 + 3.0 * dice(state), 0.5 * from);
+        let (half, middle) = (1.0 + 3.0 * dice.unit(), 0.5 * from);
         let top = from / half;
         let next = [half.next_up(), middle.next_up()];
         let phases = vec![
@@ -555,8 +551,8 @@ mod tests {
             RawPhase { time: [half, next[0]], length: [middle, next[1]], speed: [top; 2] },
             RawPhase { time: [next[0], 2.0 * half], length: [next[1], from], speed: [top, 0.0] },
         ];
-        let start = [4.0 * dice(state) - 2.0, 4.0 * dice(state) - 2.0];
-        let path = RawPath { start, heading: RawAngle::Turns(dice(state)), segments, rounding: 1e-15, step: 0.0 };
+        let start = [4.0 * dice.unit() - 2.0, 4.0 * dice.unit() - 2.0];
+        let path = RawPath { start, heading: RawAngle::Turns(dice.unit()), segments, rounding: 1e-15, step: 0.0 };
         let travel = Some(RawMotion { start: 0.0, phases, lag: 0.0, time_excess: 0.0 });
         RawAgent { id, radius: 0.2, path, travel }
     }
@@ -575,9 +571,9 @@ mod tests {
 
     #[test]
     fn arcs_are_free_just_where_no_motion_touches() {
-        let (mut state, mut free, mut refuted) = (1, 0, 0);
+        let (mut dice, mut free, mut refuted) = (Dice(1), 0, 0);
         for _ in 0..60 {
-            let agents = [bent(&mut state, 1), bent(&mut state, 2)];
+            let agents = [bent(&mut dice, 1), bent(&mut dice, 2)];
             let [first, second] = [0, 1].map(|one| Traversal::new(&agents[one]).expect("a motion"));
             let (least, most) = (-second.duration(), first.duration());
             let at = |k: i32| least + (most - least) * f64::from(k) / 200.0;

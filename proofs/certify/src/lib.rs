@@ -70,6 +70,8 @@ mod box_index;
 pub mod branches;
 pub mod delays;
 pub mod device_dump;
+#[cfg(test)]
+mod dice;
 pub mod distance_claim;
 pub mod double_double;
 pub mod error;

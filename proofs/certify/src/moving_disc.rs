@@ -306,46 +306,42 @@ fn crossing(at: &impl Fn(f64) -> Ball<DoubleDouble>, value: DoubleDouble, [mut l
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::dice::Dice;
     use crate::raw::{RawAngle, RawMotion, RawPath, RawSegment};
-
-    fn dice(state: &mut u64) -> f64 {
-        *state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
-        (*state >> 11) as f64 / (1_u64 << 53) as f64
-    }
 
     /// An agent that sets off after 2^33 s, where two times are 2^-19 s apart, on lines and arcs, with phases of all speeds, of which
     /// some are shorter than that.
-    fn late(state: &mut u64) -> RawAgent {
+    fn late(dice: &mut Dice) -> RawAgent {
         let (mut time, mut length, mut phases) = (0.0, 0.0, Vec::new());
         for _ in 0..8 {
-            let speed = if dice(state) < 0.3 { 0.0 } else { (10.0 * dice(state)).exp2() };
-            let lasts = if dice(state) < 0.5 { dice(state) } else { dice(state) * (-19.0 - 3.0 * dice(state)).exp2() };
-            let next = [time + lasts, length + speed * lasts * (1.0 + dice(state))];
+            let speed = if dice.unit() < 0.3 { 0.0 } else { (10.0 * dice.unit()).exp2() };
+            let lasts = if dice.unit() < 0.5 { dice.unit() } else { dice.unit() * (-19.0 - 3.0 * dice.unit()).exp2() };
+            let next = [time + lasts, length + speed * lasts * (1.0 + dice.unit())];
             phases.push(RawPhase { time: [time, next[0]], length: [length, next[1]], speed: [speed; 2] });
             [time, length] = next;
         }
         let (mut from, mut segments) = (0.0, Vec::new());
-        let cuts = [dice(state), dice(state), dice(state)].map(|part| part * length);
-        let ends = phases.iter().map(|phase| phase.length[1]).filter(|_| dice(state) < 0.5);
+        let cuts = [dice.unit(), dice.unit(), dice.unit()].map(|part| part * length);
+        let ends = phases.iter().map(|phase| phase.length[1]).filter(|_| dice.unit() < 0.5);
         let mut ends: Vec<f64> = ends.chain(cuts).filter(|&end| end < length).collect();
         ends.sort_by(f64::total_cmp);
         for to in ends.into_iter().chain([length]) {
-            let radius = if dice(state) < 0.5 { None } else { Some((to - from).max(1e-3) * (dice(state) - 0.5)) };
+            let radius = if dice.unit() < 0.5 { None } else { Some((to - from).max(1e-3) * (dice.unit() - 0.5)) };
             let radius = radius.map(|radius: f64| (0.2 * (to - from) + radius.abs()).copysign(radius));
-            let turns = vec![RawAngle::Radians(7.0 * dice(state))];
+            let turns = vec![RawAngle::Radians(7.0 * dice.unit())];
             segments.push(RawSegment { length: to - from, radius: radius.filter(|_| to > from), turns, from, to });
             from = to;
         }
         let path = RawPath { start: [0.0; 2], heading: RawAngle::Turns(0.0), segments, rounding: 1e-9, step: 0.0 };
-        let travel = RawMotion { start: 8_589_934_592.0 + dice(state), phases, lag: 1e-9, time_excess: 0.0 };
+        let travel = RawMotion { start: 8_589_934_592.0 + dice.unit(), phases, lag: 1e-9, time_excess: 0.0 };
         RawAgent { id: 1, radius: 0.5, path, travel: Some(travel) }
     }
 
     #[test]
     fn every_leg_is_off_by_no_more_than_it_says() {
-        let (mut state, mut worst) = (1, 0.0_f64);
+        let (mut dice, mut worst) = (Dice(1), 0.0_f64);
         for _ in 0..1000 {
-            let agent = late(&mut state);
+            let agent = late(&mut dice);
             let mover = Mover::new(&agent, [0.0, 1e12]).unwrap();
             let (stretches, travel) = (stretches(&agent.path).unwrap(), agent.travel.as_ref().unwrap());
             let end = stretches.last().map(|last| last.before + last.placed.length).unwrap();
@@ -360,8 +356,7 @@ mod tests {
                 let to = mover.legs.get(place + 1).map_or(from + 1.0, |next| next.0);
                 let digit = from * f64::EPSILON;
                 let inside = [0.0, 0.1, 0.2, 0.3, 0.4, 0.5].map(|part| part * digit);
-                let times =
-                    inside.iter().flat_map(|&by| [(from, by), (to, -by), (from, dice(&mut state) * (to - from))]);
+                let times = inside.iter().flat_map(|&by| [(from, by), (to, -by), (from, dice.unit() * (to - from))]);
                 for time in times.map(|(end, by)| DoubleDouble::from(end) + DoubleDouble::from(by)) {
                     if time < DoubleDouble::from(from) || DoubleDouble::from(to) < time {
                         continue;

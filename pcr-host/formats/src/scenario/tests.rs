@@ -1,6 +1,7 @@
 //! Tests for every kind of refusal, with the whole message, and for inputs that must not be refused.
 
 use super::*;
+use crate::splitmix64::SplitMix64;
 use serde_json::{Value, json};
 use std::f64::consts::PI;
 
@@ -329,11 +330,8 @@ fn what_is_allowed_is_accepted() {
 #[test]
 fn profiles_that_are_written_are_read_as_they_were() {
     // Numbers of all sizes, the same in each run.
-    let mut state = 1_u64;
-    let mut next = || {
-        state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
-        (state >> 11) as f64 / (1_u64 << 53) as f64
-    };
+    let mut random = SplitMix64(1);
+    let mut next = || random.unit();
     let mut written = 0;
     for _ in 0..2000 {
         // Speeds at the ends of pieces, of which some are stops.

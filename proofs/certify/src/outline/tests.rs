@@ -14,26 +14,12 @@ use super::motion::{Driven, Encounter};
 use super::separation::{Change, above, above_along, below, nearest, sketched};
 use super::table::{Checker, Report};
 use crate::ball::Ball;
+use crate::dice::Dice;
 use crate::double_double::DoubleDouble;
 use crate::pair::TableProperty;
 use crate::raw::{RawAngle, RawMotion, RawPhase, RawRegion};
 use crate::table::CoverageMargin;
 use std::f64::consts::{FRAC_PI_2, PI, TAU};
-
-struct Dice(u64);
-
-impl Dice {
-    fn unit(&mut self) -> f64 {
-        self.0 = self.0.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
-        (self.0 >> 11) as f64 / (1_u64 << 53) as f64
-    }
-    fn between(&mut self, lo: f64, hi: f64) -> f64 {
-        lo + (hi - lo) * self.unit()
-    }
-    fn of<T: Copy>(&mut self, those: &[T]) -> T {
-        those[(self.unit() * those.len() as f64) as usize]
-    }
-}
 
 fn outline(corners: &[[f64; 2]], radius: f64) -> RawOutline {
     RawOutline { corners: corners.to_vec(), radius }
