@@ -98,6 +98,7 @@ pub(crate) fn keeps<S: Scalar>([from, to]: [Vector<S>; 2], radius: S, error: S) 
 #[cfg(all(test, feature = "libm"))]
 mod tests {
     use super::*;
+    use crate::pair::outline::distance::tests::Random;
 
     const PARTS: u32 = 200;
 
@@ -111,11 +112,8 @@ mod tests {
     /// Relative motions that deviate sideways from their chord by `error` in the middle: their ends, the error, and the
     /// distance from the origin as a function of the fraction of the way.
     fn motions() -> impl Iterator<Item = ([Vector<f64>; 2], f64, impl Fn(f64) -> f64)> {
-        let mut state = 7_u64;
-        let mut random = move || {
-            state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
-            (state >> 11) as f64 / (1_u64 << 53) as f64
-        };
+        let mut numbers = Random(7);
+        let mut random = move || numbers.unit();
         (0..20_000).map(move |_| {
             let mut vector = |scale: f64| {
                 let (sin, cos) = libm::sincos(core::f64::consts::TAU * random());
