@@ -8,8 +8,8 @@
 //! refuted, 2 for wrong arguments.
 
 use pcr_tests::arguments::Arguments;
+use pcr_tests::case_ranges::run_on_all_processors;
 use pcr_tests::certified::{FORMATS, Proofs};
-use pcr_tests::outward::run_on_all_processors;
 use std::process::ExitCode;
 use std::time::Instant;
 

@@ -7,8 +7,8 @@
 //! Prints the seed of every pair that is not proved; the exit status is 1 if one is refuted, 2 for wrong arguments.
 
 use pcr_tests::arguments::Arguments;
+use pcr_tests::case_ranges::run_on_all_processors;
 use pcr_tests::certified_outlines::{FORMATS, OutlineProofs};
-use pcr_tests::outward::run_on_all_processors;
 use std::process::ExitCode;
 use std::time::Instant;
 

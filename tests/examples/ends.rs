@@ -7,8 +7,8 @@
 //! Prints the row of each format in `docs/theory/errors.md`; the exit status is 1 if two motions are not apart, 2 for wrong arguments.
 
 use pcr_tests::arguments::Arguments;
+use pcr_tests::case_ranges::run_on_all_processors;
 use pcr_tests::ends::{Ends, FORMATS};
-use pcr_tests::outward::run_on_all_processors;
 use std::process::ExitCode;
 
 fn main() -> ExitCode {

@@ -7,7 +7,8 @@
 //! Prints the seed of every violation; the exit status is 1 if there was one, 2 for wrong arguments.
 
 use pcr_tests::arguments::Arguments;
-use pcr_tests::outward::{FORMATS, Tally, run_on_all_processors};
+use pcr_tests::case_ranges::run_on_all_processors;
+use pcr_tests::outward::{FORMATS, Tally};
 use std::process::ExitCode;
 use std::time::Instant;
 

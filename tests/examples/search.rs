@@ -11,7 +11,7 @@ use pcr_core::scalar::Micro;
 use pcr_fixed::{Q12, Q16, Q20};
 use pcr_planning::fleet::HostScalar;
 use pcr_tests::arguments::Arguments;
-use pcr_tests::outward::run_on_all_processors;
+use pcr_tests::case_ranges::run_on_all_processors;
 use pcr_tests::search::{Searches, searches};
 use std::process::ExitCode;
 

@@ -1,12 +1,10 @@
 //! Tables of random pairs, proved by `pcr_certify`.
 
+use crate::case_ranges::{CaseRange, Total, in_every_format};
 use crate::disc::{Course, Disc, Drive};
 use crate::generators::certifiable;
-use crate::outward::Total;
 use pcr_certify::raw::RawTable;
 use pcr_certify::table::{Checker, CoverageMargin};
-use pcr_core::scalar::Micro;
-use pcr_fixed::{Q12, Q16, Q20};
 use pcr_formats::scenario::Scenario;
 use pcr_planning::certify::CertificateTable;
 use pcr_planning::checker_input;
@@ -126,18 +124,8 @@ pub fn run<S: HostScalar>(first: u64, count: u64) -> Proofs {
     proofs
 }
 
-/// Certifies so many cases from a first one on.
-pub type Run = fn(u64, u64) -> Proofs;
-
 /// The formats by name.
-pub const FORMATS: &[(&str, Run)] = &[
-    (f64::NAME, run::<f64>),
-    (f32::NAME, run::<f32>),
-    (Micro::NAME, run::<Micro>),
-    (Q20::NAME, run::<Q20>),
-    (Q16::NAME, run::<Q16>),
-    (Q12::NAME, run::<Q12>),
-];
+pub const FORMATS: &[(&str, CaseRange<Proofs>)] = &in_every_format!(run);
 
 /// The table of contacts of a fleet of discs.
 ///

@@ -4,8 +4,8 @@
 //! the velocity of a corner, where slices begin, end and split. Others lie on a grid, where edges are parallel and
 //! touching is exact. Reference points are inside, outside, on a corner and on an edge of an outline whose arc has its centre there.
 
+use crate::case_ranges::{CaseRange, Total, in_every_format};
 use crate::generators::Dice;
-use crate::outward::Total;
 use pcr_certify::outline::motion::{Answer, Driven, Encounter as Proof};
 use pcr_certify::outline::table::Checker;
 use pcr_certify::outline::{
@@ -13,12 +13,10 @@ use pcr_certify::outline::{
 };
 use pcr_certify::raw::{RawAngle, RawRegion};
 use pcr_certify::table::CoverageMargin;
-use pcr_core::scalar::Micro;
 use pcr_core::{
     Ecm, EcmEntry, Encounter, InvalidInput, Limits, Motion, Outline, Path, Piece, Point, Pose, Profile, TurnSide,
     Vector, excess,
 };
-use pcr_fixed::{Q12, Q16, Q20};
 use pcr_planning::checker_input;
 use pcr_planning::fleet::HostScalar;
 use std::f64::consts::{FRAC_PI_2, PI};
@@ -362,15 +360,5 @@ pub fn run<S: HostScalar>(first: u64, count: u64) -> OutlineProofs {
     proofs
 }
 
-/// Proves the pairs of some seeds.
-pub type Run = fn(u64, u64) -> OutlineProofs;
-
 /// The formats by name.
-pub const FORMATS: &[(&str, Run)] = &[
-    (f64::NAME, run::<f64>),
-    (f32::NAME, run::<f32>),
-    (Micro::NAME, run::<Micro>),
-    (Q20::NAME, run::<Q20>),
-    (Q16::NAME, run::<Q16>),
-    (Q12::NAME, run::<Q12>),
-];
+pub const FORMATS: &[(&str, CaseRange<OutlineProofs>)] = &in_every_format!(run);

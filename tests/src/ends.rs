@@ -5,14 +5,12 @@
 //! rest to rest, coordinates as far out as the format has them, and ends of intervals where discs touch along a line. Directed search changes one
 //! number of a scene at a time, and keeps what leaves less clearance at an end.
 
+use crate::case_ranges::{Total, in_every_format};
 use crate::disc::{Course, Disc, Drive, Driven, Leg};
 use crate::generators::{Dice, drive, leg};
 use crate::oracle::Pair;
-use crate::outward::Total;
 use pcr_certify::motion::{Mover, meetings};
-use pcr_core::scalar::Micro;
 use pcr_core::{Encounter, Interval, Motion, Profile, RegionRef, earliest_start, excess, least_duration, union};
-use pcr_fixed::{Q12, Q16, Q20};
 use pcr_planning::checker_input;
 use pcr_planning::fleet::{HostScalar, build_ecm};
 use std::f64::consts::{FRAC_PI_2, PI};
@@ -407,14 +405,7 @@ fn changed(scene: &Scene, dice: &mut Dice) -> Scene {
 pub type Search = fn(u64, u64, u64) -> Ends;
 
 /// The formats by name.
-pub const FORMATS: [(&str, Search); 6] = [
-    (f64::NAME, searches::<f64>),
-    (f32::NAME, searches::<f32>),
-    (Micro::NAME, searches::<Micro>),
-    (Q20::NAME, searches::<Q20>),
-    (Q16::NAME, searches::<Q16>),
-    (Q12::NAME, searches::<Q12>),
-];
+pub const FORMATS: [(&str, Search); 6] = in_every_format!(searches);
 
 #[cfg(test)]
 mod tests {

@@ -4,6 +4,7 @@
 pub mod adversary;
 pub mod arguments;
 pub mod audit;
+pub mod case_ranges;
 pub mod certified;
 pub mod certified_outlines;
 pub mod clearance;

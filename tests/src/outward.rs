@@ -8,16 +8,13 @@
 mod search;
 mod view;
 
+use crate::case_ranges::{CaseRange, Total, in_every_format};
 use crate::disc::{Course, Disc, Drive};
 use crate::exact::{DoubleDouble, Route, Travel};
 use crate::generators::{Dice, case};
-use pcr_core::scalar::Micro;
 use pcr_core::{CapacityError, excess};
-use pcr_fixed::{Q12, Q16, Q20};
 use pcr_planning::fleet::{HostScalar, build_ecm};
-use std::sync::Mutex;
-use std::sync::atomic::{AtomicU64, Ordering};
-use std::{fmt, thread};
+use std::fmt;
 use view::View;
 
 /// What is checked of a pair, and how far it went.
@@ -75,16 +72,17 @@ pub struct Tally {
 }
 
 impl Tally {
-    /// Counts another run as well.
-    pub fn add(&mut self, other: &Self) {
-        self.seen = self.seen.and(other.seen);
-        self.refused += other.refused;
-        self.violations.extend_from_slice(&other.violations);
-    }
-
     /// Cases, those included that were refused.
     pub fn cases(&self) -> u64 {
         self.seen.pairs + self.refused
+    }
+}
+
+impl Total for Tally {
+    fn add(&mut self, other: &Self) {
+        self.seen = self.seen.and(other.seen);
+        self.refused += other.refused;
+        self.violations.extend_from_slice(&other.violations);
     }
 }
 
@@ -101,18 +99,8 @@ impl fmt::Display for Tally {
     }
 }
 
-/// Checks so many cases from a first one on.
-pub type Run = fn(u64, u64) -> Tally;
-
 /// The formats by name.
-pub const FORMATS: &[(&str, Run)] = &[
-    (f64::NAME, run::<f64>),
-    (f32::NAME, run::<f32>),
-    (Micro::NAME, run::<Micro>),
-    (Q20::NAME, run::<Q20>),
-    (Q16::NAME, run::<Q16>),
-    (Q12::NAME, run::<Q12>),
-];
+pub const FORMATS: &[(&str, CaseRange<Tally>)] = &in_every_format!(run);
 
 /// Checks the cases `first`, `first + 1`, ... of [`crate::generators::case`].
 pub fn run<S: HostScalar>(first: u64, count: u64) -> Tally {
@@ -129,48 +117,6 @@ pub fn run<S: HostScalar>(first: u64, count: u64) -> Tally {
         }
     }
     tally
-}
-
-/// What runs over many cases come to together.
-pub trait Total: Default + Send {
-    /// Counts another run as well.
-    fn add(&mut self, other: &Self);
-}
-
-impl Total for Tally {
-    fn add(&mut self, other: &Self) {
-        Self::add(self, other);
-    }
-}
-
-/// The same on all processors. What a batch of the cases has come to is told beside the sum of those that were done.
-pub fn run_on_all_processors<T: Total>(
-    run: impl Fn(u64, u64) -> T + Sync,
-    first: u64,
-    count: u64,
-    tell: impl Fn(&T, &T) + Sync,
-) -> T {
-    // Few are long ones.
-    let size = (count / 64).clamp(1, 1_000);
-    let (next, total) = (AtomicU64::new(0), Mutex::new(T::default()));
-    let work = || {
-        loop {
-            let done = next.fetch_add(size, Ordering::Relaxed);
-            if done >= count {
-                break;
-            }
-            let batch = run(first.wrapping_add(done), size.min(count - done));
-            let mut total = total.lock().expect("no thread panics with it");
-            total.add(&batch);
-            tell(&batch, &total);
-        }
-    };
-    thread::scope(|scope| {
-        for _ in 0..thread::available_parallelism().map_or(1, usize::from) {
-            scope.spawn(work);
-        }
-    });
-    total.into_inner().expect("no thread panics with it")
 }
 
 /// A disc in motion, in the library and exactly.

@@ -4,10 +4,10 @@
 //! number of it, by any order of magnitude down to the last digit, and is kept unless the margin of its table is larger then: by how much
 //! more than R all contacts are covered ([`Checker::margin`]), which the whole table counts for and not only the ends of its pieces.
 
+use crate::case_ranges::Total;
 use crate::certified::table;
 use crate::disc::{Disc, Drive, Leg};
 use crate::generators::{Dice, Pair, RELATIONS, inner_tangent, related};
-use crate::outward::Total;
 use pcr_certify::pair::Findings;
 use pcr_certify::raw::RawTable;
 use pcr_certify::table::{Checker, CoverageMargin};

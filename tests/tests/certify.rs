@@ -20,10 +20,10 @@ use pcr_planning::fleet::HostScalar;
 use pcr_planning::plan::{self, PlanMethod, PlanReport};
 use pcr_planning::regions::table_of;
 use pcr_planning::regions::{RegionOptions, RegionsReport};
+use pcr_tests::case_ranges::run_on_all_processors;
 use pcr_tests::certified::{discs_of, run, table};
 use pcr_tests::disc::Drive;
 use pcr_tests::generators::{Dice, behind};
-use pcr_tests::outward::run_on_all_processors;
 use std::f64::consts::TAU;
 use std::path::{Path, PathBuf};
 

@@ -2,8 +2,8 @@
 //!
 //! The long command is `cargo run --release -p pcr-tests --example certify_outlines -- --pairs 10000000 --seed 1`.
 
+use pcr_tests::case_ranges::run_on_all_processors;
 use pcr_tests::certified_outlines::FORMATS;
-use pcr_tests::outward::run_on_all_processors;
 
 /// Pairs of a format: each takes 0.1 to 0.5 s.
 const PAIRS: u64 = 60;

@@ -8,10 +8,11 @@ use pcr_core::scalar::Micro;
 use pcr_core::{Motion, excess};
 use pcr_fixed::{Q12, Q16, Q20};
 use pcr_planning::fleet::HostScalar;
+use pcr_tests::case_ranges::run_on_all_processors;
 use pcr_tests::disc::{Course, Disc, Drive, Leg};
 use pcr_tests::exact::{DoubleDouble, Route};
 use pcr_tests::generators::{Dice, RELATIONS, drive, related};
-use pcr_tests::outward::{Checked, Seen, run, run_on_all_processors};
+use pcr_tests::outward::{Checked, Seen, run};
 
 /// Cases of a format that are checked: 82,500 in all in a release run, less in a debug run. They are the same in every run; new ones
 /// are for the long command.
