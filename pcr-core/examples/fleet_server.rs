@@ -52,7 +52,9 @@ fn with_room<T>(
 ) -> Result<T, Box<dyn Error>> {
     loop {
         match act(table) {
-            Err(EcmError::Full(full @ (CapacityError::Regions | CapacityError::Pieces))) => table.grow(full)?,
+            Err(EcmError::Full(full @ (CapacityError::Regions { .. } | CapacityError::Pieces { .. }))) => {
+                table.grow(full)?
+            }
             done => return Ok(done?),
         }
     }

@@ -37,6 +37,17 @@ impl EcmEntry {
     }
 }
 
+/// Numbers of regions and pieces of a table.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+pub struct EcmCapacity {
+    /// Number of regions, each for both directions of its pair.
+    pub regions: usize,
+    /// Number of pieces.
+    pub pieces: usize,
+}
+
 impl Default for EcmEntry {
     fn default() -> Self {
         Self::EMPTY
@@ -278,6 +289,42 @@ where
         })
     }
 
+    /// Counts the regions and pieces that the table of a fleet takes. The pairs are counted one by one in the storage of this table, so
+    /// it only has to have room for the pieces of the pair with the most of them, and for no regions. The table is then empty, as after
+    /// [`Ecm::clear`].
+    ///
+    /// Cost: that of [`Ecm::fill`]. To pause in between, sum the numbers of two agents at a time.
+    ///
+    /// # Errors
+    /// [`CapacityError::Pieces`] if a pair does not fit; [`CapacityError::Pair`], [`CapacityError::Agents`] and [`CapacityError::Contacts`]
+    /// if no storage is large enough.
+    ///
+    /// ```
+    /// # use pcr_core::{CapacityError, Ecm, EcmCapacity, EcmEntry, Motion, Path, Piece, Point, Pose, Profile, Radians};
+    /// # let stands = Path::<f64, 1>::starting_at(Pose { position: Point::new(0.0, 0.0), heading: Radians(0.0) })?;
+    /// # let profile = Profile::<f64, 1>::standing();
+    /// # let fleet = [Motion::new(stands.as_path(), profile.as_profile(), 0.25, 0.0)?; 5];
+    /// let mut ecm = Ecm::new([EcmEntry::EMPTY; 2], [Piece::EMPTY; 16]);
+    /// assert_eq!(ecm.fill(&fleet), Err(CapacityError::Regions { needed: 3, capacity: 2 }));
+    /// assert_eq!(ecm.needed(&fleet), Ok(EcmCapacity { regions: 10, pieces: 10 }));
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    pub fn needed(&mut self, fleet: &[Motion<'_, S>]) -> Result<EcmCapacity, CapacityError> {
+        self.clear();
+        let mut all = EcmCapacity::default();
+        for (agent, first) in (0..fleet.len()).zip(fleet) {
+            for (other, second) in (0..fleet.len()).zip(fleet).skip(agent.saturating_add(1)) {
+                if first.swept().meets(second.swept()) {
+                    let EcmCapacity { regions, pieces } =
+                        self.count_pair([agent, other], AgentPair::new(first, second))?;
+                    all.regions = all.regions.saturating_add(regions);
+                    all.pieces = all.pieces.saturating_add(pieces);
+                }
+            }
+        }
+        Ok(all)
+    }
+
     /// Makes this table a copy of another one, in its own storage: to move a table to larger storage, or to hand it to another task while
     /// the next one is computed. O(regions + pieces).
     ///
@@ -302,7 +349,7 @@ where
     {
         let (room, used) = (self.regions.as_mut().iter_mut(), other.entries().iter());
         if room.len() < used.len() {
-            return Err(CapacityError::Regions);
+            return Err(CapacityError::Regions { needed: used.len(), capacity: room.len() });
         }
         self.pieces.copy_from(&other.pieces)?;
         room.zip(used).for_each(|(slot, entry)| *slot = *entry);

@@ -80,21 +80,46 @@ impl core::error::Error for InvalidInput {}
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[non_exhaustive]
 pub enum CapacityError {
-    /// The table needs more pieces.
-    Pieces,
-    /// The table needs more regions.
-    Regions,
+    /// The table needs at least this many pieces; [`Ecm::needed`](crate::Ecm::needed) counts them all.
+    Pieces {
+        /// Number of pieces that the call needed before it stopped.
+        needed: usize,
+        /// Number of pieces that there is room for.
+        capacity: usize,
+    },
+    /// The table needs at least this many regions; [`Ecm::needed`](crate::Ecm::needed) counts them all.
+    Regions {
+        /// Number of regions that the call needed before it stopped.
+        needed: usize,
+        /// Number of regions that there is room for.
+        capacity: usize,
+    },
     /// These two agents have more than 32767 pieces with each other; more storage does not help.
     Pair([usize; 2]),
     /// An agent whose index is above 65535 has a region.
     Agents,
     /// A [`BroadPhase`](crate::BroadPhase) needs at least two boxes for each agent.
-    Boxes,
+    Boxes {
+        /// Number of boxes that are needed.
+        needed: usize,
+        /// Number of boxes that there is room for.
+        capacity: usize,
+    },
     /// [`PrecedenceTable`](crate::PrecedenceTable) needs one order for each region, and, to admit an agent, as many more as that agent
     /// has regions.
-    Orders,
+    Orders {
+        /// Number of orders that are needed.
+        needed: usize,
+        /// Number of orders that there is room for.
+        capacity: usize,
+    },
     /// A check of [`PrecedenceTable`](crate::PrecedenceTable) needs one [`CheckState`](crate::CheckState) for each agent.
-    Reaches,
+    Reaches {
+        /// Number of states that are needed.
+        needed: usize,
+        /// Number of states that there is room for.
+        capacity: usize,
+    },
     /// Two outlines touch at more lengths of a pair of segments than the kernel has room for; more storage does not help.
     Contacts,
 }
@@ -102,13 +127,15 @@ pub enum CapacityError {
 impl fmt::Display for CapacityError {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
-            Self::Pieces => f.write_str("there is no room for another piece"),
-            Self::Regions => f.write_str("there is no room for another region"),
+            Self::Pieces { needed, capacity } => write!(f, "there is room for {capacity} pieces, not for {needed}"),
+            Self::Regions { needed, capacity } => write!(f, "there is room for {capacity} regions, not for {needed}"),
             Self::Pair([a, b]) => write!(f, "agents {a} and {b} of the fleet have more than 32767 pieces"),
             Self::Agents => f.write_str("an agent whose index is above 65535 has a region"),
-            Self::Boxes => f.write_str("there is room for less than two boxes an agent"),
-            Self::Orders => f.write_str("there is no room for another order"),
-            Self::Reaches => f.write_str("there is room to check the orders of fewer agents"),
+            Self::Boxes { needed, capacity } => write!(f, "there is room for {capacity} boxes, not for {needed}"),
+            Self::Orders { needed, capacity } => write!(f, "there is room for {capacity} orders, not for {needed}"),
+            Self::Reaches { needed, capacity } => {
+                write!(f, "there is room to check the orders of {capacity} agents, not of {needed}")
+            }
             Self::Contacts => f.write_str("two outlines touch at too many lengths of a pair of segments"),
         }
     }

@@ -69,7 +69,7 @@ mod region;
 mod segment;
 
 pub use crossing::{Crossing, crossings};
-pub use ecm::{Ecm, EcmEntry};
+pub use ecm::{Ecm, EcmCapacity, EcmEntry};
 pub use error::{CapacityError, EcmError, InvalidInput, MismatchError};
 pub use geometry::{Aabb, Direction, Interval, Point, Pose, Vector};
 pub use intervals::{Gaps, Union, gaps, union};

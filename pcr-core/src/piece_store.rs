@@ -190,7 +190,7 @@ impl<S: Scalar, P: AsMut<[Piece<S>]>> PieceStore<S, P> {
     pub(crate) fn copy_from<O: AsRef<[Piece<S>]>>(&mut self, other: &PieceStore<S, O>) -> Result<(), CapacityError> {
         let (room, used) = (self.slots.as_mut().iter_mut(), other.slots().iter().take(other.fresh as usize));
         if room.len() < used.len() {
-            return Err(CapacityError::Pieces);
+            return Err(CapacityError::Pieces { needed: used.len(), capacity: room.len() });
         }
         room.zip(used).for_each(|(slot, piece)| *slot = *piece);
         (self.fresh, self.free, self.used, self.pending) = (other.fresh, other.free, other.used, other.pending);
@@ -201,12 +201,13 @@ impl<S: Scalar, P: AsMut<[Piece<S>]>> PieceStore<S, P> {
     pub(crate) fn push(&mut self, piece: Piece<S>) -> Result<u32, CapacityError> {
         let PendingPieces { first, last, groups } = self.pending;
         let index = if self.free == NONE { self.fresh } else { self.free };
+        let (needed, slots) = (self.len().saturating_add(1), self.slots.as_mut());
+        let full = CapacityError::Pieces { needed, capacity: slots.len() };
         if groups == GROUPS {
-            return Err(CapacityError::Pieces);
+            return Err(full);
         }
         let groups = groups.wrapping_add(1);
-        let slots = self.slots.as_mut();
-        let slot = slots.get_mut(index as usize).ok_or(CapacityError::Pieces)?;
+        let slot = slots.get_mut(index as usize).ok_or(full)?;
         if self.free == NONE {
             // A slot with this index exists, so neither this nor the number of used slots saturates.
             self.fresh = self.fresh.saturating_add(1);
@@ -417,14 +418,14 @@ mod tests {
         }
         let (first, second) = (pieces.take_region().unwrap(), pieces.take_region().unwrap());
         pieces.push(piece(7)).unwrap();
-        assert_eq!(pieces.push(piece(8)), Err(CapacityError::Pieces));
+        assert_eq!(pieces.push(piece(8)), Err(CapacityError::Pieces { needed: 4, capacity: 3 }));
         pieces.take_back();
         assert_eq!((&members(&pieces, first)[..], pieces.len()), (&[0][..], 2));
         pieces.release(second);
         for k in 10..12 {
             pieces.push(piece(k)).unwrap();
         }
-        assert_eq!(pieces.push(piece(12)), Err(CapacityError::Pieces));
+        assert_eq!(pieces.push(piece(12)), Err(CapacityError::Pieces { needed: 4, capacity: 3 }));
         assert_eq!(members(&pieces, first)[..], [0]);
     }
 }

@@ -203,7 +203,7 @@ pub fn run<S: HostScalar>(seed: u64, robots: usize, missions_until: f64) -> Tall
                         match refused {
                             AdmissionError::Stuck { .. } => tally.stuck += 1,
                             AdmissionError::Blocked { .. } => tally.blocked += 1,
-                            AdmissionError::Full(CapacityError::Pieces | CapacityError::Regions) => {
+                            AdmissionError::Full(CapacityError::Pieces { .. } | CapacityError::Regions { .. }) => {
                                 panic!("seed {seed}: no room")
                             }
                             _ => panic!("seed {seed}: {refused}"),

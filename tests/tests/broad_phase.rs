@@ -143,7 +143,7 @@ fn room_for_less_than_two_boxes_an_agent_is_refused() {
     let fleet = Fleet::<f64>::new(&Scenario::from_json(include_str!("../data/paper12.json")).unwrap()).unwrap();
     let motions = fleet.motions();
     let refused = BroadPhase::new(vec![Aabb::default(); 23], &motions, Motion::span(&motions));
-    assert_eq!(refused.err(), Some(CapacityError::Boxes));
+    assert_eq!(refused.err(), Some(CapacityError::Boxes { needed: 24, capacity: 23 }));
     assert_eq!(BroadPhase::new(vec![Aabb::default(); 24], &motions, Motion::span(&motions)).unwrap().parts(), 1);
     let nobody = BroadPhase::<f64, _>::new([], &[], Interval::default()).unwrap();
     assert_eq!((nobody.candidates().count(), nobody.contacts().count()), (0, 0));

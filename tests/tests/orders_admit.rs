@@ -359,10 +359,10 @@ fn a_path_for_which_there_is_no_room_changes_nothing() {
     // two are those of the old path, which are kept meanwhile.
     let cases = [
         (6, 6, 8, &round, Ok(4)),
-        (5, 6, 8, &round, Err(CapacityError::Regions)),
-        (6, 5, 8, &round, Err(CapacityError::Pieces)),
-        (6, 6, 7, &round, Err(CapacityError::Orders)),
-        (6, 6, 5, &round, Err(CapacityError::Orders)),
+        (5, 6, 8, &round, Err(CapacityError::Regions { needed: 6, capacity: 5 })),
+        (6, 5, 8, &round, Err(CapacityError::Pieces { needed: 6, capacity: 5 })),
+        (6, 6, 7, &round, Err(CapacityError::Orders { needed: 8, capacity: 7 })),
+        (6, 6, 5, &round, Err(CapacityError::Orders { needed: 6, capacity: 5 })),
         (4, 4, 6, &longer, Ok(2)),
     ];
     for (regions, pieces, orders, path, expected) in cases {
@@ -451,9 +451,12 @@ fn storage_grows_where_it_is_full_and_nowhere_else() {
         grown.push(full);
         assert!(grown.len() < 20, "{grown:?}");
     }
-    for full in [CapacityError::Regions, CapacityError::Pieces, CapacityError::Orders] {
-        assert!(grown.contains(&full), "{grown:?}");
-    }
+    let is_full = |full: fn(&CapacityError) -> bool| grown.iter().any(full);
+    assert!(is_full(|full| matches!(full, CapacityError::Regions { .. })), "{grown:?}");
+    assert!(is_full(|full| matches!(full, CapacityError::Pieces { .. })), "{grown:?}");
+    let regions = orders.ecm().len();
+    assert!(grown.contains(&CapacityError::Orders { needed: regions, capacity: 0 }), "{grown:?}");
     assert_eq!(orders.ecm().len(), Ecm::grown(&fleet).expect("memory").len());
-    assert_eq!(orders.grow(CapacityError::Reaches), Err(CapacityError::Reaches));
+    let states = CapacityError::Reaches { needed: 3, capacity: 0 };
+    assert_eq!(orders.grow(states), Err(states));
 }

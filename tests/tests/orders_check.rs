@@ -253,7 +253,8 @@ fn all_that_wait_for_the_next_one_around_a_square_are_stuck_and_one_that_goes_fi
         .0;
     orders.decide_at(&motions, place, 0, PassingState::First, 0.0).expect("the table of the fleet");
     assert_eq!(orders.check(&motions, &progress, EXACT, &mut reaches), Ok(()));
-    assert_eq!(orders.check(&motions, &progress, EXACT, &mut []), Err(AdmissionError::Full(CapacityError::Reaches)));
+    let full = CapacityError::Reaches { needed: motions.len(), capacity: 0 };
+    assert_eq!(orders.check(&motions, &progress, EXACT, &mut []), Err(AdmissionError::Full(full)));
 }
 
 #[test]

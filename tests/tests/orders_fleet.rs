@@ -135,7 +135,7 @@ fn a_row_answers_for_its_agent_only() {
     assert_eq!(orders.hold(&fleet, 1, &after), Ok(MovementAuthority::Free));
     // Where there is no room for its orders the table is that of nobody.
     let mut small = empty(1);
-    assert_eq!(small.fill_row(&fleet, 1), Err(CapacityError::Orders.into()));
+    assert_eq!(small.fill_row(&fleet, 1), Err(CapacityError::Orders { needed: 2, capacity: 1 }.into()));
     assert_eq!(small.hold(&fleet, 1, &before), Err(MismatchError::OtherFleet));
 }
 
@@ -147,7 +147,7 @@ fn who_comes_and_goes_leaves_the_orders_of_the_others() {
     orders.decide(&fleet[..3], 0, 1, PassingState::Second, 0.0).expect("the table of the fleet");
     orders.decide(&fleet[..3], 1, 2, PassingState::First, 0.0).expect("the table of the fleet");
     let before = trace(&orders, &fleet[..3]);
-    assert_eq!(orders.insert(&fleet, 3), Err(EcmError::Full(CapacityError::Orders)));
+    assert_eq!(orders.insert(&fleet, 3), Err(EcmError::Full(CapacityError::Orders { needed: 4, capacity: 3 })));
     assert_eq!(trace(&orders, &fleet[..3]), before);
     let mut roomy = table(&fleet[..3], 4);
     roomy.decide(&fleet[..3], 0, 1, PassingState::Second, 0.0).expect("the table of the fleet");
@@ -188,7 +188,7 @@ fn who_leaves_for_good_moves_the_others_up_with_their_orders() {
     let mut none = table(&fleet, 4);
     none.clear();
     assert_eq!(none.hold(&fleet, 0, &[]), Err(MismatchError::OtherFleet));
-    assert_eq!(empty(3).fill(&fleet), Err(CapacityError::Orders));
+    assert_eq!(empty(3).fill(&fleet), Err(CapacityError::Orders { needed: 4, capacity: 3 }));
 }
 
 #[test]
@@ -215,7 +215,10 @@ fn a_path_that_is_exchanged_is_decided_anew_and_those_of_the_others_are_not() {
     for [agent, other] in [[0, 1], [1, 2], [2, 3]] {
         narrow.decide(&fleet, agent, other, PassingState::First, 0.0).expect("the table of the fleet");
     }
-    assert_eq!(narrow.replace(&mut fleet, 1, other), Err(EcmError::Full(CapacityError::Orders)));
+    assert_eq!(
+        narrow.replace(&mut fleet, 1, other),
+        Err(EcmError::Full(CapacityError::Orders { needed: 6, capacity: 5 }))
+    );
     assert_eq!(trace(&narrow, &fleet), before);
     assert_eq!(narrow.replace(&mut fleet, 9, other), Err(MismatchError::NoSuchAgent(9).into()));
 }

@@ -200,7 +200,7 @@ fn what_makes_no_sense_is_refused_with_its_reason() {
     };
     assert_eq!(ask(&[0, 1, 2, 1], &mut reaches), Err(AdmissionError::Repeated(1)));
     assert_eq!(ask(&[0, 1, 3], &mut reaches), Err(AdmissionError::Mismatch(MismatchError::NoSuchAgent(3))));
-    assert_eq!(ask(&[0, 1, 2], &mut []), Err(AdmissionError::Full(CapacityError::Reaches)));
+    assert_eq!(ask(&[0, 1, 2], &mut []), Err(AdmissionError::Full(CapacityError::Reaches { needed: 3, capacity: 0 })));
     assert_eq!(ask(&[], &mut reaches), Ok(()));
     assert_eq!(ask(&[2, 0, 1], &mut reaches), Ok(()));
 }
@@ -214,7 +214,10 @@ fn storage_that_is_too_small_changes_nothing() {
         match batch.admitted(1e-6, orders, PassingState::First) {
             None => assert_eq!(full, 0, "there was room for less"),
             Some((Err(refused), ..)) => {
-                assert_eq!(refused, AdmissionError::Full(CapacityError::Orders), "{orders}");
+                let AdmissionError::Full(CapacityError::Orders { needed, capacity }) = refused else {
+                    panic!("{orders}: {refused}")
+                };
+                assert!(needed > orders && capacity == orders, "{orders}: {refused}");
                 full += 1;
             }
             Some((Ok(()), ..)) => assert!(full > 0 && orders > 4, "{orders}"),

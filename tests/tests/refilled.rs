@@ -99,7 +99,7 @@ fn an_agent_that_does_not_fit_leaves_no_pieces() {
     let mut ecm = Ecm::new(vec![EcmEntry::EMPTY; 3], vec![Piece::EMPTY; 8]);
     ecm.fill(&without).expect("no regions");
     for _ in 0..5 {
-        assert_eq!(ecm.insert(&fleet, 4), Err(EcmError::Full(CapacityError::Regions)));
+        assert_eq!(ecm.insert(&fleet, 4), Err(EcmError::Full(CapacityError::Regions { needed: 4, capacity: 3 })));
         assert_eq!((ecm.len(), ecm.pieces()), (0, 0));
     }
     let mut ecm = Ecm::new(vec![EcmEntry::EMPTY; 4], vec![Piece::EMPTY; 4]);
@@ -112,7 +112,11 @@ fn an_agent_that_does_not_fit_leaves_no_pieces() {
 fn a_table_that_is_not_filled_is_empty() {
     let courses = ways(4);
     let fleet = motions(&courses);
-    for (regions, pieces, full) in [(3, 8, CapacityError::Regions), (8, 3, CapacityError::Pieces)] {
+    let fulls = [
+        (3, 8, CapacityError::Regions { needed: 4, capacity: 3 }),
+        (8, 3, CapacityError::Pieces { needed: 4, capacity: 3 }),
+    ];
+    for (regions, pieces, full) in fulls {
         let mut ecm = Ecm::new(vec![EcmEntry::EMPTY; regions], vec![Piece::EMPTY; pieces]);
         assert_eq!(ecm.fill(&fleet), Err(full));
         assert_eq!((ecm.len(), ecm.pieces(), ecm.is_empty()), (0, 0, true));

@@ -2,8 +2,8 @@
 
 use pcr_core::scalar::Angle;
 use pcr_core::{
-    CapacityError, Ecm, EcmEntry, EcmError, Interval, Limits, MismatchError, Motion, Path, Piece, PlanError, Point,
-    Pose, Profile, Radians, RegionRef, TurnSide, first_conflict, plan_delays,
+    CapacityError, Ecm, EcmCapacity, EcmEntry, EcmError, Interval, Limits, MismatchError, Motion, Path, Piece,
+    PlanError, Point, Pose, Profile, Radians, RegionRef, TurnSide, first_conflict, plan_delays,
 };
 use pcr_fixed::{Q12, Q16, Q20};
 use pcr_formats::scenario::Scenario;
@@ -359,12 +359,33 @@ fn a_table_that_is_exactly_full_is_built_and_a_smaller_one_is_refused() {
     assert_eq!(entries(&tight, motions), entries(&roomy, motions));
     for room in 0..regions {
         let outcome = Ecm::build(vec![EcmEntry::EMPTY; room], vec![Piece::EMPTY; pieces], motions);
-        assert_eq!(outcome.err(), Some(CapacityError::Regions), "{room} of {regions} regions");
+        let full = CapacityError::Regions { needed: room + 1, capacity: room };
+        assert_eq!(outcome.err(), Some(full), "{room} of {regions} regions");
     }
     for room in 0..pieces {
         let outcome = Ecm::build(vec![EcmEntry::EMPTY; regions], vec![Piece::EMPTY; room], motions);
-        assert_eq!(outcome.err(), Some(CapacityError::Pieces), "{room} of {pieces} pieces");
+        let full = CapacityError::Pieces { needed: room + 1, capacity: room };
+        assert_eq!(outcome.err(), Some(full), "{room} of {pieces} pieces");
     }
+}
+
+#[test]
+fn a_table_that_is_too_small_counts_what_the_fleet_needs() {
+    let fleet = twelve();
+    let motions = fleet.motions();
+    let (_, regions, pieces) = exact(&motions);
+    let most = (0..12).flat_map(|first| (0..first).map(move |second| [first, second]));
+    let most = most.map(|[first, second]| exact(&[motions[first], motions[second]]).2).max().expect("a pair");
+    assert!(most < pieces, "a pair with {most} of {pieces} pieces");
+    let counted = Ok(EcmCapacity { regions, pieces });
+    let mut ecm = Ecm::new([EcmEntry::EMPTY; 0], vec![Piece::EMPTY; most]);
+    assert_eq!(ecm.needed(&motions), counted);
+    // It is empty and can be used; a table that had regions counts as well.
+    assert!(ecm.is_empty() && ecm.pieces() == 0);
+    assert_eq!(exact(&motions).0.needed(&motions), counted);
+    let mut short = Ecm::new([EcmEntry::EMPTY; 0], vec![Piece::EMPTY; most - 1]);
+    assert_eq!(short.needed(&motions), Err(CapacityError::Pieces { needed: most, capacity: most - 1 }));
+    assert_eq!(Ecm::<f64, _, _>::new([], []).needed(&motions[..1]), Ok(EcmCapacity::default()));
 }
 
 #[test]
@@ -386,10 +407,12 @@ fn an_agent_that_does_not_fit_leaves_the_table_as_it_was() {
             assert_eq!(outcome, Ok(()));
             continue;
         }
-        assert_eq!(
-            outcome,
-            Err(EcmError::Full(if room < regions { CapacityError::Regions } else { CapacityError::Pieces }))
-        );
+        let full = if room < regions {
+            CapacityError::Regions { needed: room + 1, capacity: room }
+        } else {
+            CapacityError::Pieces { needed: space + 1, capacity: space }
+        };
+        assert_eq!(outcome, Err(EcmError::Full(full)));
         assert_eq!(entries(&ecm, others), before, "{room} regions, {space} pieces");
         // And it still works: what was given back is free again.
         ecm.remove(others, 4).expect("it is there");

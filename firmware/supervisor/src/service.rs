@@ -342,13 +342,11 @@ fn needed<S: Number, const R: usize, const P: usize>(
     for (agent, first) in fleet.iter().enumerate() {
         for second in fleet.iter().skip(agent.saturating_add(1)) {
             // The table is too small for two agents, or no table is large enough.
-            if build(table, &[*first, *second], replies).is_err() {
-                return error.into();
-            }
-            regions = regions.saturating_add(table.regions().len());
-            pieces = pieces.saturating_add(table.regions().pieces());
+            let Ok(pair) = table.needed(&[*first, *second]) else { return error.into() };
+            regions = regions.saturating_add(pair.regions);
+            pieces = pieces.saturating_add(pair.pieces);
+            replies.pause();
         }
     }
-    table.clear();
     Refusal::Needs { regions: short(regions), pieces: short(pieces) }
 }

@@ -3,7 +3,10 @@
 use crate::agent::Agent;
 use crate::message::{Answer, Edition, Refusal, Terms};
 use crate::number::Number;
-use pcr_core::{Ecm, EcmEntry, EcmError, Interval, MismatchError, Motion, Piece, PrecedenceTable, RegionPrecedence};
+use pcr_core::{
+    CapacityError, Ecm, EcmCapacity, EcmEntry, EcmError, Interval, MismatchError, Motion, Piece, PrecedenceTable,
+    RegionPrecedence,
+};
 
 /// A table of at most `R` regions in `P` pieces.
 pub type Regions<S, const R: usize, const P: usize> = Ecm<S, [EcmEntry; R], [Piece<S>; P]>;
@@ -35,6 +38,12 @@ pub trait Table<S: Number, const R: usize, const P: usize> {
     /// # Errors
     /// [`MismatchError`].
     fn erase(&mut self, fleet: &[Motion<'_, S>], agent: usize) -> Result<(), MismatchError>;
+
+    /// Counts the regions and pieces that a fleet needs, and removes the fleet.
+    ///
+    /// # Errors
+    /// [`CapacityError`].
+    fn needed(&mut self, fleet: &[Motion<'_, S>]) -> Result<EcmCapacity, CapacityError>;
 
     /// Removes the fleet.
     fn clear(&mut self);
@@ -127,6 +136,11 @@ impl<S: Number, const R: usize, const P: usize> Table<S, R, P> for Regions<S, R,
     #[inline(never)]
     fn erase(&mut self, fleet: &[Motion<'_, S>], agent: usize) -> Result<(), MismatchError> {
         Ecm::erase(self, fleet, agent)
+    }
+
+    #[inline(never)]
+    fn needed(&mut self, fleet: &[Motion<'_, S>]) -> Result<EcmCapacity, CapacityError> {
+        Ecm::needed(self, fleet)
     }
 
     fn clear(&mut self) {

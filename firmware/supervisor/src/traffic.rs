@@ -16,8 +16,8 @@ use crate::message::{Answer, Edition, Refusal, Terms, short};
 use crate::number::Number;
 use crate::table::{Ordered, Regions, Table};
 use pcr_core::{
-    CheckState, CheckTolerances, EcmEntry, EcmError, Interval, MismatchError, Motion, PassingState, PathProposal,
-    Piece, PrecedenceTable, Progress, RegionPrecedence, Scalar,
+    CapacityError, CheckState, CheckTolerances, EcmCapacity, EcmEntry, EcmError, Interval, MismatchError, Motion,
+    PassingState, PathProposal, Piece, PrecedenceTable, Progress, RegionPrecedence, Scalar,
 };
 
 /// A table for at most `A` robots, with at most `R` regions in `P` pieces and `O` orders. It needs as many orders as
@@ -106,6 +106,12 @@ impl<S: Number, const A: usize, const R: usize, const P: usize, const O: usize> 
     #[inline(never)]
     fn erase(&mut self, fleet: &[Motion<'_, S>], agent: usize) -> Result<(), MismatchError> {
         self.orders.erase(fleet, agent)
+    }
+
+    #[inline(never)]
+    fn needed(&mut self, fleet: &[Motion<'_, S>]) -> Result<EcmCapacity, CapacityError> {
+        self.running = false;
+        self.orders.needed(fleet)
     }
 
     fn clear(&mut self) {

@@ -198,14 +198,14 @@ fn a_full_table_is_none_and_tells_what_the_fleet_needs() {
     let none = refused(Refusal::NotComputed);
     let needs = refused(Refusal::Needs { regions: 3, pieces: 3 });
     assert_eq!(said::<2, 8>(), [needs.clone(), none.clone()]);
-    assert_eq!(said::<8, 2>(), [needs, none.clone()]);
+    assert_eq!(said::<8, 2>(), [needs.clone(), none.clone()]);
     assert_eq!(
         said::<3, 3>().first(),
         Some(&Answer::Computed { regions: 3, pieces: 3 }),
         "as much as was told is enough"
     );
-    // Not even two of them fit.
-    assert_eq!(said::<0, 8>(), [refused(Refusal::TableFull(Room::Regions)), none.clone()]);
+    // They are counted without room for a region, but not without room for the pieces of two agents.
+    assert_eq!(said::<0, 8>(), [needs, none.clone()]);
     assert_eq!(said::<8, 0>(), [refused(Refusal::TableFull(Room::Pieces)), none]);
 }
 

@@ -1,7 +1,7 @@
 //! Adds the regions of an agent to a table, or removes them; entries stay sorted by pair.
 
 use super::fleet_checksum::FleetChecksum;
-use super::{Ecm, EcmEntry};
+use super::{Ecm, EcmCapacity, EcmEntry};
 use crate::bit_rows::{self, SetBits};
 use crate::error::CapacityError;
 use crate::motion::Motion;
@@ -70,13 +70,34 @@ where
         Ok(())
     }
 
-    /// If there is no room, some regions of the pair may remain: the caller then removes one of the agents, or all.
-    fn add_pair(&mut self, agents: [usize; 2], pair: AgentPair<'_, S>) -> Result<(), CapacityError> {
-        if let Err(full) = pair.find(&mut self.pieces) {
+    /// The pieces of a pair, in the pending list; none if there is no room.
+    fn find_pair(&mut self, agents: [usize; 2], pair: AgentPair<'_, S>) -> Result<(), CapacityError> {
+        pair.find(&mut self.pieces).map_err(|full| {
             let no_storage_helps = self.pieces.pair_is_full();
             self.pieces.take_back();
-            return Err(if no_storage_helps { CapacityError::Pair(agents) } else { full });
+            if no_storage_helps { CapacityError::Pair(agents) } else { full }
+        })
+    }
+
+    /// Counts the regions and pieces of a pair, in storage in which nothing else is.
+    pub(super) fn count_pair(
+        &mut self,
+        agents: [usize; 2],
+        pair: AgentPair<'_, S>,
+    ) -> Result<EcmCapacity, CapacityError> {
+        self.find_pair(agents, pair)?;
+        let (mut regions, pieces) = (0_usize, self.pieces.len());
+        while self.pieces.take_region().is_some() {
+            regions = regions.saturating_add(1);
         }
+        self.pieces.clear();
+        let numbered = agents.into_iter().all(|agent| u16::try_from(agent).is_ok());
+        if regions > 0 && !numbered { Err(CapacityError::Agents) } else { Ok(EcmCapacity { regions, pieces }) }
+    }
+
+    /// If there is no room, some regions of the pair may remain: the caller then removes one of the agents, or all.
+    fn add_pair(&mut self, agents: [usize; 2], pair: AgentPair<'_, S>) -> Result<(), CapacityError> {
+        self.find_pair(agents, pair)?;
         if self.pieces.first_pending() == NONE {
             return Ok(());
         }
@@ -101,7 +122,9 @@ where
             return Err(CapacityError::Agents);
         };
         let len = self.len.saturating_add(1);
-        let behind = self.regions.as_mut().get_mut(index..len).ok_or(CapacityError::Regions)?;
+        let regions = self.regions.as_mut();
+        let full = CapacityError::Regions { needed: len, capacity: regions.len() };
+        let behind = regions.get_mut(index..len).ok_or(full)?;
         // Every entry from here on moves back by one place.
         let places = Cell::from_mut(behind).as_slice_of_cells();
         for neighbours in places.windows(2).rev() {

@@ -24,15 +24,18 @@ impl<S: Scalar> Ecm<S, Vec<EcmEntry>, Vec<Piece<S>>> {
     pub fn grown(fleet: &[Motion<'_, S>]) -> Result<Self, CapacityError> {
         let room = fleet.len().saturating_add(1).saturating_mul(16);
         let mut ecm = Self::new(Vec::new(), Vec::new());
-        lengthened(&mut ecm.regions, room, EcmEntry::EMPTY).map_err(|_| CapacityError::Regions)?;
-        lengthened(ecm.pieces.storage(), room.saturating_mul(2), Piece::EMPTY).map_err(|_| CapacityError::Pieces)?;
+        let pieces = room.saturating_mul(2);
+        lengthened(&mut ecm.regions, room, EcmEntry::EMPTY)
+            .map_err(|_| CapacityError::Regions { needed: room, capacity: 0 })?;
+        lengthened(ecm.pieces.storage(), pieces, Piece::EMPTY)
+            .map_err(|_| CapacityError::Pieces { needed: pieces, capacity: 0 })?;
         while let Err(full) = ecm.fill(fleet) {
             ecm.grow(full)?;
         }
         Ok(ecm)
     }
 
-    /// Doubles the storage that was full. The regions stay. Afterwards repeat the call that failed (feature `alloc`):
+    /// Doubles the storage that was full, or gives it what was needed if that is more. The regions stay. Afterwards repeat the call that failed (feature `alloc`):
     ///
     /// ```
     /// # use pcr_core::{Ecm, Limits, Motion, Path, Piece, Point, Pose, Profile, Radians, EcmEntry, EcmError};
@@ -60,8 +63,10 @@ impl<S: Scalar> Ecm<S, Vec<EcmEntry>, Vec<Piece<S>>> {
         let twice = |room: usize| room.saturating_add(1).saturating_mul(2);
         let (regions, pieces) = (twice(self.regions.len()), twice(self.pieces.storage().len()));
         match full {
-            CapacityError::Regions => lengthened(&mut self.regions, regions, EcmEntry::EMPTY),
-            CapacityError::Pieces => lengthened(self.pieces.storage(), pieces, Piece::EMPTY),
+            CapacityError::Regions { needed, .. } => {
+                lengthened(&mut self.regions, regions.max(needed), EcmEntry::EMPTY)
+            }
+            CapacityError::Pieces { needed, .. } => lengthened(self.pieces.storage(), pieces.max(needed), Piece::EMPTY),
             _ => return Err(full),
         }
         .map_err(|_| full)

@@ -11,7 +11,7 @@
 //! each agent may end where another one stands that goes on (docs/theory/joint.md).
 
 use crate::ecm::EcmEntry;
-use crate::error::{CapacityError, EcmError, MismatchError};
+use crate::error::{EcmError, MismatchError};
 use crate::motion::Motion;
 use crate::piece_store::Piece;
 use crate::precedence::deadlock_check::{CheckState, CheckTolerances};
@@ -284,7 +284,7 @@ where
     /// they are. Like [`PrecedenceTable::admit`], it needs room for as many additional orders as the agent has regions.
     ///
     /// # Errors
-    /// [`CapacityError`] and [`MismatchError`]; everything is then unchanged, except in the rare case of
+    /// [`CapacityError`](crate::CapacityError) and [`MismatchError`]; everything is then unchanged, except in the rare case of
     /// [`Ecm::replace`](crate::Ecm::replace) in which the table is empty.
     pub fn replace<'m>(
         &mut self,
@@ -309,8 +309,10 @@ where
         let saved = self.count(agent);
         let room = end.saturating_sub(saved);
         let Some(&before) = fleet.get(agent) else { return Err(MismatchError::NoSuchAgent(agent).into()) };
+        // The orders behind `end` are in use, too.
+        let others = self.orders.as_ref().len().saturating_sub(room);
         if self.ecm.len() > room {
-            return Err(CapacityError::Orders.into());
+            return Err(self.lacks_orders(self.ecm.len().saturating_add(others)).into());
         }
         let mut last = end;
         let kept = self.gather(agent, |orders, order| {
@@ -324,12 +326,13 @@ where
             self.spread(agent, kept, |_| RegionPrecedence::EMPTY);
             return Ok(saved);
         }
+        let full = self.lacks_orders(self.ecm.len().saturating_add(others));
         if replaced.is_ok() {
             self.put_back(fleet, agent, before)?;
         }
         self.spread_saved(agent, kept, room);
         replaced?;
-        Err(CapacityError::Orders.into())
+        Err(full.into())
     }
 
     /// The number of regions of an agent.

@@ -95,7 +95,8 @@ where
         reaches: &mut [CheckState<S>],
     ) -> Result<(), AdmissionError> {
         self.ecm.holds_all(fleet)?;
-        let reaches = reaches.get_mut(..fleet.len()).ok_or(CapacityError::Reaches)?;
+        let (needed, capacity) = (fleet.len(), reaches.len());
+        let reaches = reaches.get_mut(..needed).ok_or(CapacityError::Reaches { needed, capacity })?;
         let tolerances = tolerances.limited();
         for ((reach, motion), agent) in reaches.iter_mut().zip(fleet).zip(0..) {
             let end = motion.path().length();

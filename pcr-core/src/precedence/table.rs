@@ -1,6 +1,6 @@
 //! The table of orders: one order for each region, at the same indices.
 
-use crate::ecm::{Ecm, EcmEntry};
+use crate::ecm::{Ecm, EcmCapacity, EcmEntry};
 use crate::error::{CapacityError, EcmError, MismatchError};
 use crate::geometry::Interval;
 use crate::motion::Motion;
@@ -200,6 +200,14 @@ where
         self.undecide()
     }
 
+    /// Counts the regions and pieces that the table of a fleet takes, like [`Ecm::needed`]. One order is needed for each region.
+    ///
+    /// # Errors
+    /// As [`Ecm::needed`].
+    pub fn needed(&mut self, fleet: &[Motion<'_, S>]) -> Result<EcmCapacity, CapacityError> {
+        self.ecm.needed(fleet)
+    }
+
     /// Computes the table of one agent's row only, with no order decided, in the existing storage. It answers holds of
     /// that agent. Cost: that of [`Ecm::fill_row`].
     ///
@@ -222,8 +230,14 @@ where
             orders.fill(RegionPrecedence::EMPTY);
             return Ok(());
         }
+        let full = self.lacks_orders(self.ecm.len());
         self.ecm.clear();
-        Err(CapacityError::Orders)
+        Err(full)
+    }
+
+    /// The error of a storage with fewer orders than this.
+    pub(super) fn lacks_orders(&self, needed: usize) -> CapacityError {
+        CapacityError::Orders { needed, capacity: self.orders.as_ref().len() }
     }
 
     /// Makes this table a copy of another one, with its orders, in its own storage, like [`Ecm::copy_from`].
@@ -238,7 +252,7 @@ where
     {
         let (room, used) = (self.orders.as_mut().iter_mut(), other.orders.as_ref().iter().take(other.ecm.len()));
         if room.len() < used.len() {
-            return Err(CapacityError::Orders);
+            return Err(CapacityError::Orders { needed: used.len(), capacity: room.len() });
         }
         self.ecm.copy_from(&other.ecm)?;
         room.zip(used).for_each(|(slot, order)| *slot = *order);
@@ -253,8 +267,9 @@ where
         let kept = self.ecm.len();
         self.ecm.insert(fleet, agent)?;
         if self.ecm.len() > self.orders.as_ref().len() {
+            let full = self.lacks_orders(self.ecm.len());
             self.ecm.remove(fleet, agent)?;
-            return Err(CapacityError::Orders.into());
+            return Err(full.into());
         }
         self.spread(agent, kept, |_| RegionPrecedence::EMPTY);
         Ok(())

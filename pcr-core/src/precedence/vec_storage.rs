@@ -30,12 +30,13 @@ impl<S: Scalar> PrecedenceTable<S, Vec<EcmEntry>, Vec<Piece<S>>, Vec<RegionPrece
     /// ```
     pub fn grown(fleet: &[Motion<'_, S>]) -> Result<Self, CapacityError> {
         let (ecm, mut orders) = (Ecm::grown(fleet)?, Vec::new());
-        orders.try_reserve_exact(ecm.len()).map_err(|_| CapacityError::Orders)?;
+        let full = CapacityError::Orders { needed: ecm.len(), capacity: 0 };
+        orders.try_reserve_exact(ecm.len()).map_err(|_| full)?;
         orders.resize(ecm.len(), RegionPrecedence::EMPTY);
         Ok(Self { ecm, orders })
     }
 
-    /// Doubles the storage that was full, like [`Ecm::grow`](crate::Ecm::grow). The regions and orders stay. Afterwards
+    /// Doubles the storage that was full, or gives it what was needed if that is more, like [`Ecm::grow`](crate::Ecm::grow). The regions and orders stay. Afterwards
     /// repeat the call that failed (feature `alloc`).
     ///
     /// # Errors
@@ -58,10 +59,9 @@ impl<S: Scalar> PrecedenceTable<S, Vec<EcmEntry>, Vec<Piece<S>>, Vec<RegionPrece
     /// # Ok::<(), Box<dyn std::error::Error>>(())
     /// ```
     pub fn grow(&mut self, full: CapacityError) -> Result<(), CapacityError> {
-        if full != CapacityError::Orders {
-            return self.ecm.grow(full);
-        }
-        let room = self.orders.len().saturating_add(1);
+        let CapacityError::Orders { needed, .. } = full else { return self.ecm.grow(full) };
+        let len = self.orders.len();
+        let room = len.saturating_add(1).max(needed.saturating_sub(len));
         self.orders.try_reserve_exact(room).map_err(|_| full)?;
         self.orders.resize(self.orders.len().saturating_add(room), RegionPrecedence::EMPTY);
         Ok(())

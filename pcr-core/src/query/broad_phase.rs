@@ -70,7 +70,9 @@ impl<'a, S: Scalar, B: AsRef<[Aabb<S>]> + AsMut<[Aabb<S>]>> BroadPhase<'a, S, B>
     pub fn new(mut boxes: B, fleet: &'a [Motion<'a, S>], during: Interval<S>) -> Result<Self, CapacityError> {
         let during = during.limited();
         let room = boxes.as_ref().len().checked_div(fleet.len()).unwrap_or(usize::MAX);
-        let halvings = room.saturating_sub(1).checked_ilog2().ok_or(CapacityError::Boxes)?.min(MOST_PARTS.ilog2());
+        let (needed, capacity) = (fleet.len().saturating_mul(2), boxes.as_ref().len());
+        let halvings = room.saturating_sub(1).checked_ilog2().ok_or(CapacityError::Boxes { needed, capacity })?;
+        let halvings = halvings.min(MOST_PARTS.ilog2());
         let parts = 1_u32.wrapping_shl(halvings);
         let mut ends = [during.hi; MOST_PARTS];
         for (part, end) in (1..parts).zip(&mut ends) {

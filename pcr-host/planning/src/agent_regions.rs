@@ -62,7 +62,7 @@ impl<'a, S: HostScalar> AgentRegions<'a, S> {
         self.motions.clear();
         self.motions.extend(self.agents.iter().map(|&agent| &motions[agent as usize]));
         let filled = match self.table.fill_row(&self.motions, self.place) {
-            Err(EcmError::Full(CapacityError::Regions | CapacityError::Pieces)) => {
+            Err(EcmError::Full(CapacityError::Regions { .. } | CapacityError::Pieces { .. })) => {
                 let agents = self.agents.len();
                 table_of(&self.motions, self.place, [2 * agents, 3 * agents]).map(|table| self.table = table)
             }

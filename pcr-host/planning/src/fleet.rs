@@ -460,8 +460,8 @@ pub(crate) fn table_of<S: HostScalar>(
 ) -> Result<HostEcm<S>, CapacityError> {
     let room = |full| move |_: memory_budget::MemoryError| full;
     let [region, piece] = [size_of::<EcmEntry>(), size_of::<Piece<S>>()].map(|size| size as u64);
-    memory_budget::for_list(regions, region).map_err(room(CapacityError::Regions))?;
-    memory_budget::for_list(pieces, piece).map_err(room(CapacityError::Pieces))?;
+    memory_budget::for_list(regions, region).map_err(room(CapacityError::Regions { needed: regions, capacity: 0 }))?;
+    memory_budget::for_list(pieces, piece).map_err(room(CapacityError::Pieces { needed: pieces, capacity: 0 }))?;
     let mut ecm = Ecm::new(vec![EcmEntry::EMPTY; regions], vec![Piece::EMPTY; pieces]);
     loop {
         match ecm.fill_row(motions, agent) {

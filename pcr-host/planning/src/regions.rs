@@ -104,7 +104,7 @@ pub fn orders(scenario: &Scenario, motions: &[Motion<'_, f64>]) -> Result<HostPr
 
 fn unfit(full: CapacityError, scenario: &Scenario, discs: usize) -> ComputationError {
     match full {
-        CapacityError::Regions | CapacityError::Pieces | CapacityError::Orders => {
+        CapacityError::Regions { .. } | CapacityError::Pieces { .. } | CapacityError::Orders { .. } => {
             MemoryError::of(format!("the table of all pairs of {discs} discs")).into()
         }
         full => ComputationError::Full(full).named(scenario),

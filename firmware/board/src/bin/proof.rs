@@ -289,6 +289,7 @@ fn table<S: Scalar>(fleet: &mut [Motion<'_, S>], agents: &[usize]) {
         any(Ecm::fill(&mut ecm, fleet).is_ok());
         let mut copy = any(Ecm::<S, _, _>::new([EcmEntry::EMPTY; 4], [Piece::EMPTY; 8]));
         any(Ecm::copy_from(&mut copy, &ecm).is_ok());
+        any(Ecm::needed(&mut copy, fleet).is_ok());
         any(copy.len());
         Ecm::clear(any(&mut ecm));
         if let Some(&motion) = any(fleet.first()) {
@@ -414,6 +415,7 @@ fn orders<S: Scalar>(fleet: &mut [Motion<'_, S>], progress: &mut [Progress<S>], 
     any(PrecedenceTable::fill(&mut orders, fleet).is_ok());
     let mut copy = any(PrecedenceTable::new([EcmEntry::EMPTY; 4], [Piece::EMPTY; 8], [RegionPrecedence::EMPTY; 4]));
     any(PrecedenceTable::copy_from(&mut copy, &orders).is_ok());
+    any(PrecedenceTable::needed(&mut copy, fleet).is_ok());
     any(PrecedenceTable::ecm(&copy).len());
     if let Some(&motion) = any(fleet.first()) {
         any(PrecedenceTable::replace(&mut orders, fleet, agent, motion).is_ok());
@@ -461,7 +463,9 @@ fn messages<S: Scalar>() {
     shown::<SpeedPlanError<S>>(any(<SpeedPlanError<S> as From<InvalidInput>>::from(any(
         InvalidInput::SweepOverOneTurn,
     ))));
-    shown::<AdmissionError>(any(<AdmissionError as From<EcmError>>::from(any(EcmError::Full(CapacityError::Orders)))));
+    shown::<AdmissionError>(any(<AdmissionError as From<EcmError>>::from(any(EcmError::Full(
+        CapacityError::Orders { needed: any(1), capacity: any(0) },
+    )))));
     shown::<PieceType>(any(PieceType::SS));
 }
 

@@ -158,8 +158,8 @@ impl From<AdmissionError> for Refusal {
 impl From<CapacityError> for Refusal {
     fn from(full: CapacityError) -> Self {
         Self::TableFull(match full {
-            CapacityError::Regions => Room::Regions,
-            CapacityError::Pieces => Room::Pieces,
+            CapacityError::Regions { .. } => Room::Regions,
+            CapacityError::Pieces { .. } => Room::Pieces,
             CapacityError::Pair(agents) => Room::Pair(agents.map(short)),
             _ => Room::Other,
         })

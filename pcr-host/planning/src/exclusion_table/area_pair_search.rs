@@ -213,7 +213,7 @@ impl SweptLayout {
                 let bytes = 2 * (pieces.len() * size_of::<Piece<f64>>()) as u64;
                 memory_budget::ask(bytes, || "a pair of edges".into())
                     .map_err(|large| ImportError::new(large.to_string()))?;
-                if full != CapacityError::Pieces {
+                if !matches!(full, CapacityError::Pieces { .. }) {
                     let names = [own, other].map(|body| self.name(body));
                     let problem = "more than 32767 pieces (pairs of segments within reach of one another)";
                     return Err(ImportError::new(format!("{} and {}: {problem}", names[0], names[1])));

@@ -17,7 +17,7 @@ pub fn can_touch(own: &[Agent], others: &[Agent]) -> bool {
             loop {
                 match overlaps(a, b, &mut pieces, |_| found = true) {
                     Ok(_) => return found,
-                    Err(CapacityError::Pieces) if pieces.len() < 1 << 20 => {
+                    Err(CapacityError::Pieces { .. }) if pieces.len() < 1 << 20 => {
                         pieces.resize(2 * pieces.len(), Piece::EMPTY)
                     }
                     Err(_) => return true,

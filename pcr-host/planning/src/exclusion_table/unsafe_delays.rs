@@ -284,7 +284,7 @@ impl UnsafeDelayModel {
         let mut pieces = vec![Piece::EMPTY; PIECES];
         while let Err(full) = overlaps(own, their, &mut pieces, &mut found) {
             let names = units.map(|unit| self.name(unit));
-            if full != CapacityError::Pieces {
+            if !matches!(full, CapacityError::Pieces { .. }) {
                 let problem = "more than 32767 pieces (pairs of segments within reach of one another)";
                 return Err(ImportError::new(format!("{} and {}: {problem}", names[0], names[1])));
             }
