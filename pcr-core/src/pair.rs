@@ -99,16 +99,16 @@ impl<'a, S: Scalar> AgentPair<'a, S> {
         let place = |piece: &Piece<S>| (u32::from(piece.second_segment) << 16) | u32::from(piece.first_segment);
         let mut a = pieces.first_pending();
         let mut next_row = a;
-        while let Some(&before) = pieces.slots().get(a as usize) {
+        while let Some(&before) = pieces.get(a) {
             // A path has at most 2^16 - 1 segments, so the first index does not reach the second.
             let (beside, above) = (place(&before).saturating_add(1), place(&before).saturating_add(1 << 16));
-            while let Some(piece) = pieces.slots().get(next_row as usize)
+            while let Some(piece) = pieces.get(next_row)
                 && place(piece) < above
             {
                 next_row = piece.next;
             }
             let mut b = before.next;
-            while let Some(&after) = pieces.slots().get(b as usize)
+            while let Some(&after) = pieces.get(b)
                 && place(&after) <= above
             {
                 let at = place(&after);

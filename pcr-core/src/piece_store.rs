@@ -13,8 +13,14 @@ use crate::scalar::Scalar;
 use crate::segment::Segment;
 use core::marker::PhantomData;
 
-/// End of a list.
-pub(crate) const NONE: u32 = u32::MAX;
+/// End of a list. Indices of pieces count from 1, so that an empty table is all zeros: a static with one takes no room in flash.
+pub(crate) const NONE: u32 = 0;
+
+/// The slot of a piece, counted from 0; for [`NONE`] one that no storage has.
+#[inline(always)]
+const fn slot(index: u32) -> usize {
+    index.wrapping_sub(1) as usize
+}
 
 /// Bit in the group of a piece that says that other pieces have the same group.
 const JOINED: u16 = 1 << 15;
@@ -113,7 +119,7 @@ impl<S: Scalar> Default for Piece<S> {
 #[derive(Clone, Debug)]
 pub(crate) struct PieceStore<S, P> {
     slots: P,
-    /// Index of the first slot that was never used.
+    /// Number of slots that were ever used; they are the first ones.
     fresh: u32,
     /// Head of the list of freed slots.
     free: u32,
@@ -179,9 +185,14 @@ impl<S, P: AsRef<[Piece<S>]>> PieceStore<S, P> {
         self.slots.as_ref()
     }
 
+    /// The piece at this index.
+    pub(crate) fn get(&self, index: u32) -> Option<&Piece<S>> {
+        self.slots().get(slot(index))
+    }
+
     /// The pending piece after this one; the first one for [`NONE`].
     pub(crate) fn pending_after(&self, index: u32) -> u32 {
-        self.slots().get(index as usize).map_or(self.pending.first, |piece| piece.next)
+        self.get(index).map_or(self.pending.first, |piece| piece.next)
     }
 }
 
@@ -200,24 +211,24 @@ impl<S: Scalar, P: AsMut<[Piece<S>]>> PieceStore<S, P> {
     /// Adds a piece to the pending list, with a group of its own.
     pub(crate) fn push(&mut self, piece: Piece<S>) -> Result<u32, CapacityError> {
         let PendingPieces { first, last, groups } = self.pending;
-        let index = if self.free == NONE { self.fresh } else { self.free };
+        let index = if self.free == NONE { self.fresh.wrapping_add(1) } else { self.free };
         let (needed, slots) = (self.len().saturating_add(1), self.slots.as_mut());
         let full = CapacityError::Pieces { needed, capacity: slots.len() };
         if groups == GROUPS {
             return Err(full);
         }
         let groups = groups.wrapping_add(1);
-        let slot = slots.get_mut(index as usize).ok_or(full)?;
+        let place = slots.get_mut(slot(index)).ok_or(full)?;
         if self.free == NONE {
-            // A slot with this index exists, so neither this nor the number of used slots saturates.
-            self.fresh = self.fresh.saturating_add(1);
+            self.fresh = index;
         } else {
-            self.free = slot.next;
+            self.free = place.next;
         }
-        *slot = Piece { group: groups, next: NONE, ..piece };
-        if let Some(last) = slots.get_mut(last as usize) {
+        *place = Piece { group: groups, next: NONE, ..piece };
+        if let Some(last) = slots.get_mut(slot(last)) {
             last.next = index;
         }
+        // A slot with this index exists, so this does not saturate.
         self.used = self.used.saturating_add(1);
         self.pending = PendingPieces { first: if first == NONE { index } else { first }, last: index, groups };
         Ok(index)
@@ -225,14 +236,14 @@ impl<S: Scalar, P: AsMut<[Piece<S>]>> PieceStore<S, P> {
 
     /// The pending piece at an index returned by [`PieceStore::push`].
     pub(crate) fn get_mut(&mut self, index: u32) -> Option<&mut Piece<S>> {
-        self.slots.as_mut().get_mut(index as usize)
+        self.slots.as_mut().get_mut(slot(index))
     }
 
     /// Puts two pending pieces, and all pieces that were joined with them, into one region. [`NONE`] is ignored. O(1)
     /// if one of them has not been joined yet, otherwise O(pending pieces).
     pub(crate) fn join(&mut self, a: u32, b: u32) {
         let slots = self.slots.as_mut();
-        let group = |index: u32| slots.get(index as usize).map(|piece| piece.group);
+        let group = |index: u32| slots.get(slot(index)).map(|piece| piece.group);
         let (Some(kept), Some(gone)) = (group(a), group(b)) else {
             return;
         };
@@ -242,14 +253,14 @@ impl<S: Scalar, P: AsMut<[Piece<S>]>> PieceStore<S, P> {
         if kept & gone & JOINED == 0 {
             let group = JOINED | if gone & JOINED == 0 { kept } else { gone };
             for index in [a, b] {
-                if let Some(piece) = slots.get_mut(index as usize) {
+                if let Some(piece) = slots.get_mut(slot(index)) {
                     piece.group = group;
                 }
             }
             return;
         }
         let mut index = self.pending.first;
-        while let Some(piece) = slots.get_mut(index as usize) {
+        while let Some(piece) = slots.get_mut(slot(index)) {
             if piece.group == gone {
                 piece.group = kept;
             }
@@ -262,15 +273,15 @@ impl<S: Scalar, P: AsMut<[Piece<S>]>> PieceStore<S, P> {
     pub(crate) fn take_region(&mut self) -> Option<u32> {
         let slots = self.slots.as_mut();
         let head = self.pending.first;
-        let group = slots.get(head as usize)?.group;
+        let group = slots.get(slot(head))?.group;
         let (mut taken, mut rest) = (NONE, NONE);
         let (mut index, mut rest_head) = (head, NONE);
-        while let Some(piece) = slots.get_mut(index as usize) {
+        while let Some(piece) = slots.get_mut(slot(index)) {
             let (member, next) = (piece.group == group, piece.next);
             piece.next = NONE;
             let tail = if member { &mut taken } else { &mut rest };
             let before = core::mem::replace(tail, index);
-            match slots.get_mut(before as usize) {
+            match slots.get_mut(slot(before)) {
                 Some(before) => before.next = index,
                 None if !member => rest_head = index,
                 None => {}
@@ -292,7 +303,7 @@ impl<S: Scalar, P: AsMut<[Piece<S>]>> PieceStore<S, P> {
     /// Frees the pieces of a list.
     pub(crate) fn release(&mut self, head: u32) {
         let mut index = head;
-        while let Some(piece) = self.slots.as_mut().get_mut(index as usize) {
+        while let Some(piece) = self.slots.as_mut().get_mut(slot(index)) {
             let next = core::mem::replace(&mut piece.next, self.free);
             self.free = index;
             self.used = self.used.saturating_sub(1);
@@ -330,7 +341,7 @@ impl<'a, S> PieceList<'a, S> {
 impl<'a, S> Iterator for PieceList<'a, S> {
     type Item = &'a Piece<S>;
     fn next(&mut self) -> Option<&'a Piece<S>> {
-        let piece = self.slots.get(self.next as usize)?;
+        let piece = self.slots.get(slot(self.next))?;
         self.next = piece.next;
         Some(piece)
     }
@@ -392,17 +403,17 @@ mod tests {
         };
         for joins in 0..400 {
             let mut pieces = PieceStore::new([Piece::EMPTY; 24]);
-            (0..24).for_each(|k| assert_eq!(pieces.push(piece(k)), Ok(u32::from(k))));
+            (0..24).for_each(|k| assert_eq!(pieces.push(piece(k)), Ok(u32::from(k) + 1)));
             let mut groups: [u32; 24] = core::array::from_fn(|k| k as u32);
             for _ in 0..joins % 40 {
                 let (a, b) = (random(), random());
-                pieces.join(a, b);
+                pieces.join(a + 1, b + 1);
                 let [kept, gone] = [a, b].map(|index| groups[index as usize]);
                 groups.iter_mut().filter(|group| **group == gone).for_each(|group| *group = kept);
             }
             while let Some(head) = pieces.take_region() {
                 let all: heapless::Vec<u16, 24> =
-                    (0..24).filter(|&k| groups[usize::from(k)] == groups[head as usize]).collect();
+                    (0..24).filter(|&k| groups[usize::from(k)] == groups[slot(head)]).collect();
                 assert_eq!(members(&pieces, head), all);
                 all.iter().for_each(|&k| groups[usize::from(k)] = 24 + u32::from(k));
             }
