@@ -192,6 +192,12 @@ figures() {
       printf '%9d  bytes of stack of a hold, bound\n' "$(tools/fwcheck.py "$programs/robot" --root robot::hold 2>/dev/null)"
       ;;
   esac
+  case $target:$format in
+    thumbv7em-none-eabihf:f32 | thumbv6m-none-eabi:q16)
+      build "$target" "$format" stacks
+      ./qemu-run.sh "$programs/stacks"
+      ;;
+  esac
   # What the robot has told, while it was run above.
   sed 's/^\( *[0-9]*  \)/\1instructions: /' "$scratch/robot"
   ICOUNT=7 ./qemu-run.sh "$programs/measure" | sed 's/^\( *[0-9]*  \)/\1instructions: /'
@@ -238,6 +244,22 @@ budgets() {
         >/dev/null 2>"$scratch/fwcheck" || fail "$(cat "$scratch/fwcheck")"
       limit "$file" "bytes of stack of a hold, bound" "$stack"
       limit "$file" "bytes of code of a robot that keeps orders, the library not included" 8192
+      ;;
+  esac
+  # Single calls, where they are measured: tables and movement authority, and searches, which need more.
+  local call
+  case $target:$format in
+    thumbv7em-none-eabihf:f32 | thumbv6m-none-eabi:q16)
+      for call in "the constructors" "the motions" Ecm::fill "RegionRef::time and length" RegionRef::slice_at Encounter::closest \
+        PrecedenceTable::hold; do
+        limit "$file" "bytes of stack of $call" "$stack"
+      done
+      for call in first_conflict first_overlap safe_intervals safe_lengths RegionRef::forbidden_delays earliest_start least_duration \
+        PrecedenceTable::check PrecedenceTable::as_planned PrecedenceTable::replace; do
+        limit "$file" "bytes of stack of $call" 3072
+      done
+      limit "$file" "bytes of stack of PrecedenceTable::admit" 3328
+      limit "$file" "bytes of stack of earliest_departure" 4480
       ;;
   esac
   case $target in

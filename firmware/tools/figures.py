@@ -44,16 +44,30 @@ def number(found, what, unit=""):
     return f"{found[what]:,}{unit}" if what in found else "–"
 
 
+CALLS = ["first_conflict", "first_overlap", "safe_intervals", "safe_lengths", "RegionRef::forbidden_delays", "earliest_start", "earliest_departure",
+         "least_duration", "Encounter::closest", "RegionRef::slice_at", "PrecedenceTable::hold", "PrecedenceTable::check",
+         "PrecedenceTable::as_planned", "PrecedenceTable::replace", "PrecedenceTable::admit"]
+
+
+def most(found, what, calls):
+    """The largest figure of some calls, which all have one or none."""
+    values = [found[what + call] for call in calls if what + call in found]
+    if values and len(values) < len(calls):
+        sys.exit(f"not all of {calls} are measured")
+    return f"{max(values):,} B" if values else "–"
+
+
 def overview():
     """docs/guide/firmware.md: a line for each of some targets and formats."""
-    yield row(["target, format", "ε at M = VT = 10 m", "library code", "table in RAM", "stack", "instructions: the whole table, per region"])
-    yield "|---" * 6 + "|"
+    yield row(["target, format", "ε at M = VT = 10 m", "library code", "table in RAM", "stack: the table", "any query", "instructions: the whole table, per region"])
+    yield "|---" * 7 + "|"
     excess = excesses()
     for target, form, core in SHOWN:
         found = figures(target, form)
         yield row([f"{core}, {FORMATS[form]}", excess[form], number(found, "bytes of code of the library in it", " B"),
                    number(found, "bytes of the table in RAM", " B"),
                    number(found, "bytes of stack of the pipeline, measured", " B"),
+                   most(found, "bytes of stack of ", CALLS),
                    f"{number(found, 'instructions: table of all agents')}, "
                    f"{number(found, 'instructions: ... per region, both directions')}"])
 

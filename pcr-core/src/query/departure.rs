@@ -13,6 +13,8 @@ use crate::scalar::Scalar;
 impl<S: Scalar> RegionRef<'_, S> {
     /// The least wait from `wait` on, at a length of the path, with which the ego does not meet the rest of this
     /// region, and whether the rest is clear then (as `settle` asks).
+    // Not inlined: the caller keeps a copy of the regions.
+    #[inline(never)]
     fn next_free_after(&self, at: S, wait: S, strictly: bool) -> Option<(S, bool)> {
         let (ego, other) = (self.ego_motion(), self.other_motion());
         let at = ego.path().length().min(at);
@@ -60,11 +62,16 @@ impl<S: Scalar> RegionRef<'_, S> {
     }
 
     /// How long the ego can stand at a length of its path, counted from when its motion leaves it.
+    // Not inlined: its frame would add to that of the search before it.
+    #[inline(never)]
     fn longest_wait(&self, at: S) -> S {
         let at = self.ego_motion().path().length().min(at);
         let leaves = self.leaves(at);
-        let windows = self.blocked(Interval::new(at, at), Interval::new(leaves, S::LIMIT));
-        windows.map(|window| window.lo - leaves).fold(S::LIMIT, S::min)
+        let mut longest = S::LIMIT;
+        for window in self.blocked(Interval::new(at, at), Interval::new(leaves, S::LIMIT)) {
+            longest = longest.min(window.lo - leaves);
+        }
+        longest
     }
 }
 
