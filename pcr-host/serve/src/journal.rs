@@ -13,6 +13,9 @@
 //!
 //! A journal that was begun anew has the whole state in its first frame, and was on the disk before it replaced the
 //! journal before it. Its last byte of the header says so: if its first frame is incomplete, that is damage.
+//!
+//! A journal of the version before has the same frames, and fewer kinds of entries. When it is opened, its frames get the present header, and
+//! the file as it was stays beside it. So a program of the version before never reads entries that it does not know.
 
 mod folder_lock;
 
@@ -24,10 +27,13 @@ use std::io::{self, ErrorKind, Read, Seek, SeekFrom, Write};
 use std::path::{Path, PathBuf};
 
 /// First bytes of a journal: its kind, the version of its frames and entries, and in the last byte whether it was begun anew.
-pub const HEADER: &[u8; 16] = b"pcr-journal\0\x03\0\0\0";
+pub const HEADER: &[u8; 16] = b"pcr-journal\0\x04\0\0\0";
 
 /// First bytes of a journal that was begun anew. (No single bit makes one of the two headers of the other one.)
-pub const ANEW: &[u8; 16] = b"pcr-journal\0\x03\0\0\xff";
+pub const ANEW: &[u8; 16] = b"pcr-journal\0\x04\0\0\xff";
+
+/// The version before, which is read, too. (Two versions in a row differ in no single bit.)
+const BEFORE: u32 = 3;
 
 /// Where the version is in a header.
 const VERSION: usize = 12;
@@ -55,6 +61,8 @@ pub struct JournalContents {
     pub entries: Vec<JournalEntry>,
     /// Size of an incomplete last frame, which is left out \[bytes\].
     pub torn: u64,
+    /// The file of a journal of the version before, as it was; `None` if the journal was of the present version.
+    pub former: Option<PathBuf>,
 }
 
 /// An open journal; no other process can open it.
@@ -91,15 +99,19 @@ impl Journal {
         let mut file = OpenOptions::new().read(true).write(true).open(&path).map_err(of(&path))?;
         let mut bytes = Vec::new();
         file.read_to_end(&mut bytes).map_err(of(&path))?;
-        let ParsedFrames { entries, first, end: len, sum } =
+        let ParsedFrames { entries, first, end: len, sum, is_former } =
             read(&bytes).map_err(|why| io::Error::new(ErrorKind::InvalidData, why))?;
+        let former = is_former.then(|| folder.join(format!("journal.{BEFORE}")));
+        if let Some(former) = &former {
+            file = converted(folder, &bytes[..len], former)?;
+        }
         let torn = bytes[len..].iter().rposition(|byte| *byte != 0).map_or(0, |last| last as u64 + 1);
         let (first, len) = (first as u64, len as u64);
         // The bytes of an incomplete frame are removed, because the next frame begins there.
         file.set_len(len).and_then(|()| file.sync_all()).map_err(of(&path))?;
         file.seek(SeekFrom::Start(len))?;
         let own = Self { folder: folder.into(), file, lock, len, first, sum, end: len, failed: false };
-        Ok((own, JournalContents { entries, torn }))
+        Ok((own, JournalContents { entries, torn, former }))
     }
 
     /// Adds a frame, and returns when it is on the disk. After an error any part of it may be there.
@@ -174,6 +186,16 @@ fn written(folder: &Path, bytes: &[u8]) -> io::Result<()> {
     File::open(folder).and_then(|folder| folder.sync_all()).map_err(of(folder))
 }
 
+/// Gives the frames of a journal of the version before the present header, and keeps the file as it was under another name. If this ends
+/// halfway, the journal is still the former one.
+fn converted(folder: &Path, frames: &[u8], former: &Path) -> io::Result<File> {
+    let path = folder.join("journal");
+    fs::copy(&path, former).and_then(|_| File::open(former)?.sync_all()).map_err(of(former))?;
+    let header = if frames[HEADER.len() - 1] == ANEW[HEADER.len() - 1] { ANEW } else { HEADER };
+    written(folder, &[header.as_slice(), &frames[HEADER.len()..]].concat())?;
+    OpenOptions::new().read(true).write(true).open(&path).map_err(of(&path))
+}
+
 /// In the first frame, stands for the checksum of a frame before.
 pub const FIRST: u32 = 0;
 
@@ -214,6 +236,8 @@ pub struct ParsedFrames {
     pub end: usize,
     /// Its checksum.
     pub sum: u32,
+    /// Whether the journal is of the version before.
+    pub is_former: bool,
 }
 
 /// Why the bytes of a journal cannot be read.
@@ -242,7 +266,10 @@ impl fmt::Display for JournalDamage {
         match self {
             Self::NoJournal => f.write_str("it is no journal"),
             Self::Version { own, version } => {
-                write!(f, "it is of version {own}, and {version} is read: begin another journal while all robots stand")
+                write!(
+                    f,
+                    "it is of version {own}, and {BEFORE} and {version} are read: begin another journal while all robots stand"
+                )
             }
             Self::Frame { byte, why } => write!(f, "at byte {byte}: {why}"),
         }
@@ -256,18 +283,21 @@ impl std::error::Error for JournalDamage {}
 /// # Errors
 /// [`JournalDamage`].
 pub fn read(bytes: &[u8]) -> Result<ParsedFrames, JournalDamage> {
-    let is_anew = match bytes.get(..HEADER.len()) {
-        Some(header) if header == HEADER => false,
-        Some(header) if header == ANEW => true,
-        Some(header) if header[..VERSION] == HEADER[..VERSION] => {
-            // Without the last byte where it is that of a journal begun anew.
-            let of = |word: u32| if word.to_le_bytes()[3] == ANEW[15] { word & 0xff_ffff } else { word };
-            let [own, version] = [header, HEADER].map(|header| word(header, VERSION).map_or(0, of));
-            return Err(JournalDamage::Version { own, version });
-        }
-        _ => return Err(JournalDamage::NoJournal),
+    let header = bytes.get(..HEADER.len()).filter(|header| header[..VERSION] == HEADER[..VERSION]);
+    let Some(header) = header else { return Err(JournalDamage::NoJournal) };
+    // Without the last byte where it is that of a journal begun anew.
+    let of = |word: u32| if word.to_le_bytes()[3] == ANEW[15] { (word & 0xff_ffff, true) } else { (word, false) };
+    let [(own, is_anew), (version, _)] = [header, HEADER].map(|header| word(header, VERSION).map_or((0, false), of));
+    if own != version && own != BEFORE {
+        return Err(JournalDamage::Version { own, version });
+    }
+    let mut read = ParsedFrames {
+        entries: Vec::new(),
+        first: HEADER.len(),
+        end: HEADER.len(),
+        sum: FIRST,
+        is_former: own == BEFORE,
     };
-    let mut read = ParsedFrames { entries: Vec::new(), first: HEADER.len(), end: HEADER.len(), sum: FIRST };
     while let Some(rest) = bytes.get(read.end..).filter(|rest| !rest.is_empty()) {
         let damage = |why: &str| JournalDamage::Frame { byte: read.end, why: why.to_owned() };
         match text(rest) {

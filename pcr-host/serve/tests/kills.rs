@@ -130,7 +130,7 @@ fn a_journal_that_is_damaged_is_not_gone_on_with() {
     }
     let mut older = bytes.clone();
     older[12] = 2;
-    let why = "it is of version 2, and 3 is read: begin another journal while all robots stand";
+    let why = "it is of version 2, and 3 and 4 are read: begin another journal while all robots stand";
     assert_eq!(journal::read(&older).unwrap_err().to_string(), why);
     assert_eq!(journal::read(b"{}").unwrap_err(), JournalDamage::NoJournal);
 }
@@ -383,8 +383,8 @@ fn a_journal_begun_anew_that_was_cut_is_damaged() {
         assert!(journal::read(&other).is_err(), "bit {bit}");
     }
     let mut later = whole;
-    later[12] = 4;
-    assert_eq!(journal::read(&later).unwrap_err(), JournalDamage::Version { own: 4, version: 3 });
+    later[12] = 5;
+    assert_eq!(journal::read(&later).unwrap_err(), JournalDamage::Version { own: 5, version: 4 });
     let _ = std::fs::remove_dir_all(&folder);
 }
 

@@ -3,6 +3,7 @@
 mod alarms;
 mod asked;
 mod deploy;
+mod former;
 mod holds;
 mod joints;
 mod kills;

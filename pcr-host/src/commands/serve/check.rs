@@ -114,12 +114,13 @@ fn journal(
         Err(error) => return Err(wrong(error)),
     };
     let found = journal::read(&bytes).map_err(|damage| CliError::wrong(folder, damage))?;
+    let version = if found.is_former { ", of the version before: the start converts it" } else { "" };
     let supervisor = Supervisor::restored(settings, found.entries, Box::new(NullStore))
         .map_err(|damage| CliError::wrong(folder, damage))?;
     if let Some(fleet) = fleet {
         bridge::known(&supervisor, &fleet.profiles, log)?;
     }
-    Ok(format!("journal: {} robots", supervisor.robots().len()))
+    Ok(format!("journal: {} robots{version}", supervisor.robots().len()))
 }
 
 /// Whether nobody listens at a port.

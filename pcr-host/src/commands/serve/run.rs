@@ -214,6 +214,10 @@ fn open(
             &[("bytes", &found.torn)],
         );
     }
+    if let Some(former) = &found.former {
+        let what = "the journal was of the version before, and is of the present one now; as it was, it is";
+        log.write(LogLevel::Info, what, &[("file", &former.display())]);
+    }
     let own = handle.clone();
     let writer =
         JournalWriter::start(Box::new(journal), move || own.wake()).map_err(|error| CliError::wrong(folder, error))?;
