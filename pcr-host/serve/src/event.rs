@@ -101,6 +101,18 @@ pub enum SupervisorEvent {
         /// Name of the robot.
         robot: String,
     },
+    /// A person has said that a robot is away: nobody waits to hear from it.
+    Away {
+        /// Name of the robot.
+        robot: String,
+        /// Whether its place, its path and its hold stay reserved, until it is removed.
+        keeps_place: bool,
+    },
+    /// A robot that was away is not any more.
+    Back {
+        /// Name of the robot.
+        robot: String,
+    },
     /// A robot with a task has not advanced for a long time, because of this robot.
     Standstill {
         /// Name of the robot that causes it.
@@ -155,6 +167,8 @@ impl SupervisorEvent {
             | Self::Dropped { robot, .. }
             | Self::Silent { robot, .. }
             | Self::Heard { robot }
+            | Self::Away { robot, .. }
+            | Self::Back { robot }
             | Self::Standstill { robot, .. }
             | Self::Alarm { robot, .. }
             | Self::Clear { robot }

@@ -167,6 +167,13 @@ pub enum JournalEntry {
         /// Elements to be appended.
         more: Vec<Value>,
     },
+    /// A robot, or a vehicle that is not there yet, is away, or no longer. (Not in journals of version 3.)
+    Away {
+        /// Name of the robot.
+        robot: String,
+        /// Whether it is away.
+        away: bool,
+    },
     /// The alarm of a robot has begun, changed or ended.
     Alarm {
         /// Name of the robot.

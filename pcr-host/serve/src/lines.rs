@@ -37,6 +37,8 @@ enum Request {
     Mission(MissionRequest),
     /// A robot is removed.
     Remove(RobotRef),
+    /// A robot is away, or no longer.
+    Away(AbsenceReport),
     /// The position of a robot.
     Position(PositionReport),
     /// A robot is off its path.
@@ -68,6 +70,14 @@ struct AddRobot {
 #[serde(deny_unknown_fields)]
 struct RobotRef {
     robot: String,
+}
+
+#[derive(Clone, Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+struct AbsenceReport {
+    robot: String,
+    #[serde(default = "yes")]
+    away: bool,
 }
 
 #[derive(Clone, Debug, Deserialize)]
@@ -217,6 +227,9 @@ pub fn carry_out(supervisor: &mut Supervisor, request: RequestLine, came: f64, n
             supervisor.mission(&proposal, now).map(|verdict| json!(verdict))
         }
         Request::Remove(RobotRef { robot }) => supervisor.remove(&robot).map(|there| json!({ "removed": there })),
+        Request::Away(AbsenceReport { robot, away }) => {
+            supervisor.set_away(&robot, away).map(|keeps_place| json!({ "away": away, "keeps_place": keeps_place }))
+        }
         Request::Position(report) => supervisor.position(&report, came).map(|()| json!({})),
         Request::Off(OffPathReport { robot, x, y, age }) => {
             supervisor.report_off_path(&robot, [x, y], age, came).map(|()| json!({}))

@@ -73,6 +73,8 @@ impl LogWriter {
             SupervisorEvent::Admitted { .. }
             | SupervisorEvent::Waiting { .. }
             | SupervisorEvent::Heard { .. }
+            | SupervisorEvent::Away { .. }
+            | SupervisorEvent::Back { .. }
             | SupervisorEvent::Clear { .. }
             | SupervisorEvent::Go { .. } => LogLevel::Info,
             SupervisorEvent::Dropped { .. } | SupervisorEvent::Silent { .. } => LogLevel::Warn,

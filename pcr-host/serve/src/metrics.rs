@@ -101,6 +101,7 @@ pub(crate) fn text(supervisor: &Supervisor, latency: &LatencyHistogram, bridge: 
     let LatencyHistogram { count, sum, .. } = latency;
     let _ = writeln!(text, "{name}_bucket{{le=\"+Inf\"}} {count}\n{name}_sum {sum}\n{name}_count {count}");
     of_robots(&mut text, supervisor);
+    of_absent(&mut text, supervisor);
     if let Some(bridge) = bridge {
         of_bridge(&mut text, bridge);
     }
@@ -122,6 +123,15 @@ fn of_robots(text: &mut String, supervisor: &Supervisor) {
         for robot in supervisor.robots() {
             let _ = writeln!(text, "pcr_robot_{name}{{robot=\"{}\"}} {}", escaped(&robot.name), u8::from(is(robot)));
         }
+    }
+}
+
+/// A line for each vehicle that is away.
+fn of_absent(text: &mut String, supervisor: &Supervisor) {
+    let name = "pcr_vehicle_away";
+    let _ = writeln!(text, "# HELP {name} 1: a person has said that it is away.\n# TYPE {name} gauge");
+    for vehicle in supervisor.away() {
+        let _ = writeln!(text, "{name}{{robot=\"{}\"}} 1", escaped(vehicle));
     }
 }
 

@@ -73,6 +73,8 @@ pub(crate) struct RobotView<'a> {
     alarm: Option<&'a Alarm>,
     #[serde(skip_serializing_if = "Option::is_none")]
     stopped_for: Option<&'a str>,
+    #[serde(skip_serializing_if = "std::ops::Not::not")]
+    away: bool,
     silent: bool,
     start: StartPose,
     shapes: &'a [PathElement],
@@ -98,6 +100,7 @@ impl<'a> RobotView<'a> {
             waiting: robot.waiting.as_ref().map(|waiting| waiting.mission.as_str()),
             alarm: robot.alarm.as_ref(),
             stopped_for: robot.stopped.as_deref(),
+            away: robot.away,
             silent: robot.silent,
             start: robot.course.start(),
             shapes: robot.course.shapes(),
@@ -118,7 +121,7 @@ pub fn answer(supervisor: &Supervisor, question: &Query, now: f64) -> Result<Val
         }
         Query::Robots { robot: None } => {
             let views: Vec<RobotView<'_>> = robots.iter().map(|robot| RobotView::new(supervisor, robot, now)).collect();
-            Ok(json!({ "robots": views }))
+            Ok(json!({ "robots": views, "away": supervisor.away() }))
         }
         Query::Holds {} => {
             let hold = |robot: &SupervisedRobot| {

@@ -30,6 +30,8 @@ pub enum RequestError {
         /// Angle between the end and the start \[rad\].
         angle: f64,
     },
+    /// The robot is away.
+    Away,
     /// A value is out of range, or a path is invalid.
     Invalid {
         /// What is wrong, in words.
@@ -91,6 +93,7 @@ impl fmt::Display for RequestError {
             Self::Apart { distance, angle } => {
                 write!(f, "the path begins {distance} m and {angle} rad off the end of the one before it")
             }
+            Self::Away => f.write_str("the robot is away: say that it is not, or let it send its position"),
             Self::Invalid { why } | Self::Malformed { why } | Self::Version { why } => f.write_str(why),
             Self::NoHello => f.write_str(
                 "the first line of a connection has to be {\"pcr\": 1, \"verb\": \"hello\", \"token\": \"...\"}, with the token from the file that \

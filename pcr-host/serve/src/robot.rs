@@ -271,6 +271,10 @@ pub struct SupervisedRobot {
     pub stopped: Option<String>,
     /// Its waiting mission, if there is one.
     pub waiting: Option<PendingMission>,
+    /// Whether a person has said that it is away.
+    pub(crate) away: bool,
+    /// Whether it was away, was added since, and it has not been looked yet whether it stands where others may go.
+    pub(crate) returned: bool,
     /// Whether it has been reported as silent.
     pub silent: bool,
     /// Time at which it was last seen to advance, or got a path \[s\].
@@ -316,6 +320,8 @@ impl SupervisedRobot {
             alarm: None,
             stopped: None,
             waiting: None,
+            away: false,
+            returned: false,
             silent: false,
             moved: None,
             stands: false,

@@ -3,6 +3,7 @@
 //! Requests change its state. [`Supervisor::settle`] then lets robots go on, writes data that must not be lost to the
 //! journal, and only then returns the messages to be sent. Times are seconds of any monotonic clock.
 
+mod absence;
 mod admission;
 mod alarms;
 mod authority;
@@ -28,7 +29,7 @@ use pcr_core::{
 };
 use pcr_formats::scenario::label;
 use serde::Serialize;
-use std::collections::HashMap;
+use std::collections::{BTreeSet, HashMap};
 
 /// Orders on the heap.
 pub(crate) type FleetPrecedences = PrecedenceTable<f64, Vec<EcmEntry>, Vec<Piece<f64>>, Vec<RegionPrecedence<f64>>>;
@@ -114,6 +115,10 @@ pub struct Supervisor {
     tries: HashMap<String, admission::AdmissionRetry>,
     /// Number of times a robot was added or removed.
     census: u64,
+    /// Names of the robots and vehicles that are away.
+    away: BTreeSet<String>,
+    /// Names of vehicles that may be away without being here.
+    expected: BTreeSet<String>,
     /// Highest path number of any removed robot. New robots get higher numbers, so late messages of a removed robot with the same name are
     /// recognised.
     spent: u64,
@@ -151,6 +156,8 @@ impl Supervisor {
             turn: 0,
             tries: HashMap::new(),
             census: 0,
+            away: BTreeSet::new(),
+            expected: BTreeSet::new(),
             spent: 0,
             begun: None,
             looked: f64::NEG_INFINITY,
@@ -226,7 +233,7 @@ impl Supervisor {
         Ok(())
     }
 
-    /// Adds a robot that stands. Robots that have not yet been allowed to pass there wait for it until it has a mission.
+    /// Adds a robot that stands; one that was away is not any more. Robots that have not yet been allowed to pass there wait for it until it has a mission.
     ///
     /// # Errors
     /// [`RequestError::RobotExists`], [`RequestError::Invalid`]. Adding the same robot twice is no error before it has a mission.
@@ -240,7 +247,15 @@ impl Supervisor {
             return Err(RequestError::invalid("the name of a robot is 1 to 200 printable characters"));
         }
         let abilities = abilities.checked().map_err(RequestError::invalid)?;
-        self.insert(standing(name, abilities, start)?)
+        let returned = self.is_away(name);
+        self.insert(SupervisedRobot { returned, ..standing(name, abilities, start)? })?;
+        if returned {
+            // It was away, and is here: it is not any more.
+            self.away.remove(name);
+            self.entries.push(JournalEntry::Away { robot: name.into(), away: false });
+            self.events.push(SupervisorEvent::Back { robot: name.into() });
+        }
+        Ok(())
     }
 
     /// Moves a robot to a place off its path, without a mission, after it was seen there: all its rights are void. The ids of
@@ -255,6 +270,7 @@ impl Supervisor {
         let mut new = standing(name, robot.abilities.clone(), start)?;
         new.path = robot.path + 1;
         new.past.clone_from(&robot.past);
+        new.away = robot.away;
         let waiting = robot.waiting.as_ref().map(|waiting| &waiting.mission);
         for mission in robot.mission.iter().chain(waiting) {
             SupervisedRobot::outlives(&mut new.past, mission.clone());
@@ -325,6 +341,10 @@ impl Supervisor {
         self.tries.remove(name);
         self.names = self.robots.iter().enumerate().map(|(place, robot)| (robot.name.clone(), place)).collect();
         self.entries.push(JournalEntry::Removed { robot: name.into() });
+        // Whether a vehicle is away counts on: it is not here for that.
+        if !self.expected.contains(name) && self.away.remove(name) {
+            self.entries.push(JournalEntry::Away { robot: name.into(), away: false });
+        }
         self.forget_holds();
         self.hazards = true;
         Ok(true)

@@ -39,6 +39,11 @@ impl Telemetry {
             SupervisorEvent::Dropped { mission, why, .. } => format!("{mission} of {robot} is given up: {why}"),
             SupervisorEvent::Silent { since, .. } => format!("{robot} is not heard for {since:.0} s"),
             SupervisorEvent::Heard { .. } => format!("{robot} is heard again"),
+            SupervisorEvent::Away { keeps_place: true, .. } => {
+                format!("{robot} is away; its place is kept until it is removed")
+            }
+            SupervisorEvent::Away { .. } => format!("{robot} is away"),
+            SupervisorEvent::Back { .. } => format!("{robot} is not away any more"),
             SupervisorEvent::Standstill { since, why, .. } => format!("no progress for {since:.0} s: {why}"),
             SupervisorEvent::Alarm { .. } => format!("{robot} is not where it may be"),
             SupervisorEvent::Clear { .. } => format!("{robot} is where it may be again"),

@@ -132,6 +132,8 @@ pub(crate) fn requests() -> Vec<String> {
         r#"{"verb": "position", "robot": "a", "path": 1, "at": [0, 1e300], "age": -1}"#.into(),
         r#"{"verb": "position", "robot": "a", "path": 1, "at": [4, 4.5]}"#.into(),
         r#"{"verb": "off", "robot": "b", "x": 1, "y": 1}"#.into(),
+        r#"{"verb": "away", "robot": "b"}"#.into(),
+        r#"{"verb": "away", "robot": "b", "away": false}"#.into(),
         r#"{"verb": "remove", "robot": "a"}"#.into(),
         r#"{"verb": "remove", "robot": "a"}"#.into(),
         r#"{"pcr": 1, "verb": "hello", "token": "x"}"#.into(),

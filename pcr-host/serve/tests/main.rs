@@ -2,6 +2,7 @@
 
 mod alarms;
 mod asked;
+mod away;
 mod deploy;
 mod former;
 mod holds;

@@ -128,6 +128,9 @@ impl Supervisor {
         if robot.past.contains(&proposal.mission) {
             return Ok(AdmissionResult::Past);
         }
+        if robot.away {
+            return Err(RequestError::Away);
+        }
         let after = proposal.after.unwrap_or(robot.course.length());
         let waiting = PendingMission {
             mission: proposal.mission.clone(),

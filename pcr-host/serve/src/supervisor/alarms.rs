@@ -3,7 +3,7 @@
 use super::{Supervisor, fleet};
 use crate::event::SupervisorEvent;
 use crate::owned_path::{OwnedPath, StartPose};
-use crate::robot::{Alarm, ROOM};
+use crate::robot::{Alarm, ROOM, SupervisedRobot};
 use pcr_core::{Ecm, MovementAuthority, PassingState, RegionRef};
 use pcr_planning::fleet::ConvexBody;
 
@@ -33,6 +33,7 @@ impl Supervisor {
         let mut limits = vec![AlarmLimit::default(); self.robots.len()];
         self.lost(now, &mut limits);
         self.unordered(&mut limits);
+        self.note_returned(now);
         self.hazards = self.robots.iter().any(|robot| robot.alarm.is_some());
         for (place, limit) in limits.iter().enumerate() {
             let robot = &self.robots[place];
@@ -122,6 +123,35 @@ impl Supervisor {
                     MovementAuthority::Inside => limit.lower(self.robots[place].arc_length - ROOM, region.other()),
                 }
             }
+        }
+    }
+}
+
+impl Supervisor {
+    /// A robot that was away and stands where others may go already is not where it may be: that is an alarm, beside the stop of those others,
+    /// until it says that it stands there.
+    fn note_returned(&mut self, now: f64) {
+        let returned = |robot: &&SupervisedRobot| robot.returned;
+        if !self.robots.iter().any(|robot| returned(&robot)) {
+            return;
+        }
+        let fleet = fleet(&self.robots);
+        let is_in_the_way = |place: &usize| {
+            let row = fleet.as_ref().ok().and_then(|fleet| self.orders.row(fleet, *place).ok());
+            let Some(mut row) = row else { return true };
+            row.any(|(_, region, pass)| {
+                let other = &self.robots[region.other()];
+                let length = region.other_length();
+                pass == PassingState::Undecided && other.arc_length <= length.hi && other.notified_limit >= length.lo
+            })
+        };
+        let places = (0..self.robots.len()).filter(|&place| self.robots[place].returned);
+        let found: Vec<usize> = places.filter(is_in_the_way).collect();
+        drop(fleet);
+        self.robots.iter_mut().for_each(|robot| robot.returned = false);
+        for place in found {
+            let StartPose { x, y, .. } = self.robots[place].course.start();
+            self.alarm(place, Some(Alarm::Off { x, y }), now);
         }
     }
 }

@@ -35,6 +35,7 @@ impl Supervisor {
     fn wants(&self, place: usize) -> bool {
         let robot = &self.robots[place];
         robot.alarm.is_none()
+            && !robot.away
             && robot.stopped.is_none()
             && robot.wanted(self.settings.lookahead, self.settings.position_uncertainty) > robot.granted
     }
@@ -102,7 +103,10 @@ impl Supervisor {
     /// was told. As long as a robot is not where it may be, there is nothing to spare.
     fn highest(&self, place: usize) -> f64 {
         let robot = &self.robots[place];
-        let bound = robot.authority.filter(|_| !self.hazards).and_then(|wait| wait.hold.length(robot.course.length()));
+        let bound = robot
+            .authority
+            .filter(|_| !self.hazards && !robot.away)
+            .and_then(|wait| wait.hold.length(robot.course.length()));
         bound.map_or(robot.notified_limit, |bound| {
             bound.min(robot.granted + self.settings.persisted_reserve).max(robot.notified_limit)
         })

@@ -19,7 +19,10 @@ impl Supervisor {
         self.looked = now;
         self.robots.iter_mut().for_each(|robot| _ = robot.moved.get_or_insert(now));
         for place in 0..self.robots.len() {
-            if self.is_busy(&self.robots[place]) && self.since(place, now) > self.settings.deadlock_timeout {
+            if !self.robots[place].away
+                && self.is_busy(&self.robots[place])
+                && self.since(place, now) > self.settings.deadlock_timeout
+            {
                 self.note_reason(place, now);
             }
         }
@@ -44,6 +47,13 @@ impl Supervisor {
             return;
         }
         let why = match (self.is_busy(robot), chain.iter().rev().nth(1)) {
+            (_, Some(&before)) if robot.away => {
+                format!(
+                    "{} is away, and keeps its place until it is removed: {} waits for it",
+                    robot.name, self.robots[before].name
+                )
+            }
+            _ if robot.away => return,
             (true, _) => {
                 format!("{} is at {:.2} m, and may go to {:.2} m", robot.name, robot.arc_length, robot.notified_limit)
             }
@@ -66,7 +76,9 @@ impl Supervisor {
     /// For each robot whether it has stood at its hold for longer than `patience`, perhaps because later missions pass it again and again.
     /// New missions are then ordered behind it, so that the number of robots ahead of it falls until it goes on.
     pub(super) fn overtaken(&self, now: f64) -> Vec<bool> {
-        let is_overtaken = |place| self.is_held(place) && self.since(place, now) > self.settings.deadlock_timeout;
+        let is_overtaken = |place: usize| {
+            !self.robots[place].away && self.is_held(place) && self.since(place, now) > self.settings.deadlock_timeout
+        };
         (0..self.robots.len()).map(is_overtaken).collect()
     }
 

@@ -117,6 +117,10 @@ impl Supervisor {
     }
 
     fn is_alive(&mut self, place: usize, now: f64) {
+        if self.robots[place].away {
+            let name = self.robots[place].name.clone();
+            self.comes_back(&name);
+        }
         let robot = &mut self.robots[place];
         robot.alive = Some(now);
         if std::mem::take(&mut robot.silent) {
@@ -125,7 +129,7 @@ impl Supervisor {
     }
 
     /// Something is wrong with a robot, or no longer, as it said at a time that is not before what is known of it.
-    fn alarm(&mut self, place: usize, alarm: Option<Alarm>, heard: f64) {
+    pub(super) fn alarm(&mut self, place: usize, alarm: Option<Alarm>, heard: f64) {
         let robot = &mut self.robots[place];
         let same = |(a, b): (&Alarm, &Alarm)| std::mem::discriminant(a) == std::mem::discriminant(b);
         if robot.alarm.is_none() && alarm.is_none() {
@@ -152,7 +156,7 @@ impl Supervisor {
 
     /// Tells of robots that have not been heard for long.
     pub(super) fn note_silence(&mut self, now: f64) {
-        for robot in &mut self.robots {
+        for robot in self.robots.iter_mut().filter(|robot| !robot.away) {
             let since = now - *robot.alive.get_or_insert(now);
             if since > self.settings.report_timeout && !robot.silent {
                 robot.silent = true;

@@ -5,7 +5,7 @@ use crate::journal_entry::{JournalEntry, JournalStore, PageLayout, StoredPrecede
 use crate::request_error::RequestError;
 use crate::robot::{Alarm, SupervisedRobot, remember};
 use pcr_core::{CheckState, MismatchError, PassingState};
-use std::collections::{HashMap, HashSet};
+use std::collections::{BTreeSet, HashMap, HashSet};
 use std::fmt;
 
 /// The reason why a journal cannot be continued.
@@ -32,6 +32,7 @@ struct RestoredState {
     layout: PageLayout,
     robots: Vec<StoredRobot>,
     spent: u64,
+    away: BTreeSet<String>,
 }
 
 impl RestoredState {
@@ -91,6 +92,8 @@ impl RestoredState {
                     return Err(JournalError(format!("{robot}, {key}: more of what is no list")));
                 }
             }
+            JournalEntry::Away { robot, away: true } => _ = self.away.insert(robot),
+            JournalEntry::Away { robot, away: false } => _ = self.away.remove(&robot),
             JournalEntry::Alarm { robot, alarm } => self.robot(&robot)?.alarm = alarm,
         }
         Ok(())
@@ -111,7 +114,7 @@ impl Supervisor {
         let mut state = RestoredState::default();
         entries.into_iter().try_for_each(|entry| state.take(entry))?;
         let mut own = Self::new(settings, keeper);
-        (own.layout, own.spent) = (state.layout, state.spent);
+        (own.layout, own.spent, own.away) = (state.layout, state.spent, state.away);
         if own.spent >= MOST {
             return Err(JournalError("a number of a path that cannot be".into()));
         }
@@ -122,7 +125,8 @@ impl Supervisor {
             }
             own.names.insert(known.name.clone(), own.robots.len());
             let turn = known.waiting.as_ref().map_or(0, |waiting| waiting.turn);
-            own.robots.push(robot(known)?);
+            let away = own.away.contains(&known.name);
+            own.robots.push(SupervisedRobot { away, ..robot(known)? });
             own.turn = own.turn.max(turn + 1);
         }
         let count = own.robots.len();
@@ -191,7 +195,8 @@ impl Supervisor {
             Ok(JournalEntry::Robot(Box::new(known)))
         });
         let spent = (self.spent > 0).then_some(Ok(JournalEntry::Spent { path: self.spent }));
-        layout.chain(spent).chain(robots).collect()
+        let away = self.away.iter().map(|name| Ok(JournalEntry::Away { robot: name.clone(), away: true }));
+        layout.chain(spent).chain(robots).chain(away).collect()
     }
 }
 
