@@ -24,6 +24,4 @@ pub struct BridgeStatus {
     pub active: bool,
     /// Numbers of messages since the start.
     pub counts: BridgeCounters,
-    /// Names of the vehicles that have not said where they stand, so that no vehicle is released anything.
-    pub unplaced: Vec<String>,
 }

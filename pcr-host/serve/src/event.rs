@@ -113,6 +113,18 @@ pub enum SupervisorEvent {
         /// Name of the robot.
         robot: String,
     },
+    /// Others wait for a vehicle, because it has not said where it stands.
+    Unplaced {
+        /// Name of the vehicle.
+        robot: String,
+        /// Why they wait, and what to do, in words.
+        why: String,
+    },
+    /// Nobody waits for it for that any more.
+    Placed {
+        /// Name of the vehicle.
+        robot: String,
+    },
     /// A robot with a task has not advanced for a long time, because of this robot.
     Standstill {
         /// Name of the robot that causes it.
@@ -169,6 +181,8 @@ impl SupervisorEvent {
             | Self::Heard { robot }
             | Self::Away { robot, .. }
             | Self::Back { robot }
+            | Self::Unplaced { robot, .. }
+            | Self::Placed { robot }
             | Self::Standstill { robot, .. }
             | Self::Alarm { robot, .. }
             | Self::Clear { robot }

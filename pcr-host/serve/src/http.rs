@@ -198,7 +198,8 @@ pub fn answer(handle: &ServerHandle, site: &HttpContent, request: &[u8]) -> (&'s
         "/state" => match handle.ask(|supervisor, board, now| {
             let robots = supervisor.robots().iter();
             let views: Vec<RobotView<'_>> = robots.map(|robot| RobotView::new(supervisor, robot, now)).collect();
-            json!({ "now": now, "counts": supervisor.counts(), "robots": views, "away": supervisor.away(), "events": board.events() }).to_string()
+            json!({ "now": now, "counts": supervisor.counts(), "robots": views, "away": supervisor.away(),
+                "unplaced": supervisor.unplaced().map(|(name, why)| format!("{name} {why}")).collect::<Vec<_>>(), "events": board.events() }).to_string()
         }) {
             Some(text) => ("200 OK", "application/json", text),
             None => ended(),

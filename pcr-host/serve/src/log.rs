@@ -75,12 +75,14 @@ impl LogWriter {
             | SupervisorEvent::Heard { .. }
             | SupervisorEvent::Away { .. }
             | SupervisorEvent::Back { .. }
+            | SupervisorEvent::Placed { .. }
             | SupervisorEvent::Clear { .. }
             | SupervisorEvent::Go { .. } => LogLevel::Info,
             SupervisorEvent::Dropped { .. } | SupervisorEvent::Silent { .. } => LogLevel::Warn,
-            SupervisorEvent::Standstill { .. } | SupervisorEvent::Alarm { .. } | SupervisorEvent::Stop { .. } => {
-                LogLevel::Error
-            }
+            SupervisorEvent::Standstill { .. }
+            | SupervisorEvent::Alarm { .. }
+            | SupervisorEvent::Unplaced { .. }
+            | SupervisorEvent::Stop { .. } => LogLevel::Error,
         };
         if level >= self.least {
             let text = serde_json::to_string(event).unwrap_or_default();

@@ -126,17 +126,24 @@ fn of_robots(text: &mut String, supervisor: &Supervisor) {
     }
 }
 
-/// A line for each vehicle that is away.
+/// A line for each vehicle that is away, or that others wait for because it has not said where it stands.
 fn of_absent(text: &mut String, supervisor: &Supervisor) {
     let name = "pcr_vehicle_away";
     let _ = writeln!(text, "# HELP {name} 1: a person has said that it is away.\n# TYPE {name} gauge");
     for vehicle in supervisor.away() {
         let _ = writeln!(text, "{name}{{robot=\"{}\"}} 1", escaped(vehicle));
     }
+    let (name, all) = ("pcr_vehicles_unplaced", supervisor.unplaced().count());
+    let _ = writeln!(text, "# HELP {name} Vehicles that others wait for.\n# TYPE {name} gauge\n{name} {all}");
+    let name = "pcr_vehicle_unplaced";
+    let _ = writeln!(text, "# HELP {name} 1: it has not said where it stands.\n# TYPE {name} gauge");
+    for (vehicle, why) in supervisor.unplaced() {
+        let _ = writeln!(text, "{name}{{robot=\"{}\",why=\"{}\"}} 1", escaped(vehicle), escaped(why));
+    }
 }
 
 fn of_bridge(text: &mut String, bridge: &BridgeStatus) {
-    let BridgeStatus { connected, active, counts, unplaced } = bridge;
+    let BridgeStatus { connected, active, counts } = bridge;
     for (name, kind, help, value) in [
         ("broker_connected", "gauge", "Whether the broker is connected.", u64::from(*connected)),
         ("broker_active", "gauge", "Whether this is the supervisor at work at the broker.", u64::from(*active)),
@@ -144,14 +151,8 @@ fn of_bridge(text: &mut String, bridge: &BridgeStatus) {
         ("messages_refused_total", "counter", "Messages that were refused; the log says why.", counts.refused),
         ("messages_foreign_total", "counter", "Messages of vehicles that are not in the file.", counts.foreign),
         ("messages_sent_total", "counter", "Messages to vehicles and to the manager.", counts.sent),
-        ("vehicles_unplaced", "gauge", "Vehicles that everybody waits for.", unplaced.len() as u64),
     ] {
         let _ = writeln!(text, "# HELP pcr_{name} {help}\n# TYPE pcr_{name} {kind}\npcr_{name} {value}");
-    }
-    let name = "pcr_vehicle_unplaced";
-    let _ = writeln!(text, "# HELP {name} 1: it has not said where it stands.\n# TYPE {name} gauge");
-    for vehicle in unplaced {
-        let _ = writeln!(text, "{name}{{robot=\"{}\"}} 1", escaped(vehicle));
     }
 }
 

@@ -14,6 +14,7 @@ mod positions;
 mod restore;
 mod robot_notes;
 
+pub use absence::{StandingPlace, UnplacedVehicle};
 pub use admission::{AdmissionResult, MissionRequest};
 pub use positions::PositionReport;
 pub use restore::JournalError;
@@ -29,7 +30,7 @@ use pcr_core::{
 };
 use pcr_formats::scenario::label;
 use serde::Serialize;
-use std::collections::{BTreeSet, HashMap};
+use std::collections::{BTreeMap, BTreeSet, HashMap};
 
 /// Orders on the heap.
 pub(crate) type FleetPrecedences = PrecedenceTable<f64, Vec<EcmEntry>, Vec<Piece<f64>>, Vec<RegionPrecedence<f64>>>;
@@ -117,6 +118,8 @@ pub struct Supervisor {
     census: u64,
     /// Names of the robots and vehicles that are away.
     away: BTreeSet<String>,
+    /// Vehicles that have not said where they stand.
+    unplaced: BTreeMap<String, UnplacedVehicle>,
     /// Names of vehicles that may be away without being here.
     expected: BTreeSet<String>,
     /// Highest path number of any removed robot. New robots get higher numbers, so late messages of a removed robot with the same name are
@@ -157,6 +160,7 @@ impl Supervisor {
             tries: HashMap::new(),
             census: 0,
             away: BTreeSet::new(),
+            unplaced: BTreeMap::new(),
             expected: BTreeSet::new(),
             spent: 0,
             begun: None,

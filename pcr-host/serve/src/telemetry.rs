@@ -44,6 +44,8 @@ impl Telemetry {
             }
             SupervisorEvent::Away { .. } => format!("{robot} is away"),
             SupervisorEvent::Back { .. } => format!("{robot} is not away any more"),
+            SupervisorEvent::Unplaced { why, .. } => format!("{robot} {why}"),
+            SupervisorEvent::Placed { .. } => format!("nobody waits any more for {robot} to say where it stands"),
             SupervisorEvent::Standstill { since, why, .. } => format!("no progress for {since:.0} s: {why}"),
             SupervisorEvent::Alarm { .. } => format!("{robot} is not where it may be"),
             SupervisorEvent::Clear { .. } => format!("{robot} is where it may be again"),

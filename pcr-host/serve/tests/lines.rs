@@ -445,7 +445,7 @@ fn clients_over_tcp_and_the_page() {
     assert!(ask("/map?robot=nobody").starts_with("HTTP/1.1 404") && ask("/map").starts_with("HTTP/1.1 400"));
     assert!(ask("/healthz").starts_with("HTTP/1.1 200"));
     assert!(ask("/readyz").starts_with("HTTP/1.1 200"));
-    let status = BridgeStatus { connected: true, unplaced: vec!["kit/1".into()], ..BridgeStatus::default() };
+    let status = BridgeStatus { connected: true, ..BridgeStatus::default() };
     unready.tell(Some("kit/1 has not said where it stands".into()), status);
     let told = ask("/readyz");
     assert!(told.starts_with("HTTP/1.1 503") && told.ends_with("kit/1 has not said where it stands\n"), "{told}");
@@ -453,8 +453,7 @@ fn clients_over_tcp_and_the_page() {
     for line in [
         "pcr_broker_connected 1",
         "pcr_broker_active 0",
-        "pcr_vehicles_unplaced 1",
-        "pcr_vehicle_unplaced{robot=\"kit/1\"} 1",
+        "pcr_vehicles_unplaced 0",
         "pcr_robot_waiting{robot=\"a\"} 0",
         "pcr_robot_alarmed{robot=\"b\"} 0",
     ] {

@@ -579,10 +579,31 @@ fn what_would_be_wrong_is_said_before_the_start() {
     for (from, to, reason) in [
         ("\"speed\"", "\"pace\"", "vehicles[0]: pace: unknown"),
         ("\"radius\":0.4,", "", "vehicles[0]: radius: a number is expected"),
+        ("\"radius\"", "\"away\":1,\"radius\"", "vehicles[0]: away: true or false is expected"),
+        ("\"radius\"", "\"places\":[],\"radius\"", "vehicles[0]: places: a list with a place is expected"),
+        (
+            "\"radius\"",
+            "\"places\":[{\"x\":1,\"y\":2}],\"radius\"",
+            "vehicles[0]: places[0]: within: a number is expected",
+        ),
+        (
+            "\"radius\"",
+            "\"places\":[{\"x\":1,\"y\":2,\"within\":-1}],\"radius\"",
+            "places[0]: within: -1 is out of range",
+        ),
+        ("\"radius\"", "\"places\":[{\"x\":1e30,\"y\":2,\"within\":1}],\"radius\"", "places[0]: x, y: out of range"),
+        (
+            "\"radius\"",
+            "\"places\":[{\"x\":1,\"y\":2,\"within\":1,\"z\":1}],\"radius\"",
+            "places[0]: x, y and within are read",
+        ),
     ] {
         let changed = file("serve-check", "changed.json", VEHICLES.replace(from, to));
         wrong(&["--fleet", &changed, "--broker", &open], reason);
     }
+    let more = "\"away\":true,\"places\":[{\"x\":1,\"y\":2,\"within\":0.5}],\"radius\"";
+    let changed = file("serve-check", "changed.json", VEHICLES.replace("\"radius\"", more));
+    assert_eq!(check(&["--fleet", &changed, "--broker", &open]).status, 0);
     let taken = std::net::TcpListener::bind("127.0.0.1:0").unwrap();
     let port = taken.local_addr().unwrap().port().to_string();
     run_with(&["serve", "--log", "error", "--journal", &journal], ADD.as_bytes()).ok();

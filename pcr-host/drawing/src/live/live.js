@@ -140,6 +140,7 @@ function says(robot) {
   const all = [];
   if (robot.alarm) all.push({ off: "off its path", back: "gone back" }[robot.alarm.why] ?? "beyond its hold");
   if (robot.stopped_for) all.push(`stopped for ${robot.stopped_for}`);
+  if (robot.away) all.push("away, keeps its place");
   if (robot.silent) all.push("silent");
   if (robot.waits_for) all.push(`waits for ${robot.waits_for}`);
   if (robot.waiting) all.push(`${robot.waiting} waits`);
@@ -168,6 +169,9 @@ function show() {
   }
   const events = $("events"), texts = state.events.slice(-30).reverse().map(({ time, text }) => `${time.toFixed(1)} s: ${text}`);
   if (events.firstChild?.textContent !== texts[0]) events.replaceChildren(...texts.map((text) => Object.assign(document.createElement("li"), { textContent: text })));
+  const away = state.away.filter((name) => !known.includes(name)), waits = [...state.unplaced, ...away.map((name) => `${name} is away`)];
+  if ($("waits").textContent !== waits.join("; ")) $("waits").textContent = waits.join("; ");
+  $("waits").className = state.unplaced.length ? "bad" : "";
   since ??= { now: state.now, admitted: state.counts.admitted };
   const hours = (state.now - since.now) / 3600, rate = hours > 0.002 ? `, ${((state.counts.admitted - since.admitted) / hours).toFixed(0)} missions an hour` : "";
   $("summary").textContent = `${layout.name ? layout.name + ": " : ""}${known.length} robots, ${state.counts.admitted} missions admitted${rate}, ${state.counts.alarms} ${state.counts.alarms === 1 ? "alarm" : "alarms"}`;

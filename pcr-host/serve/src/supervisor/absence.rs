@@ -1,13 +1,62 @@
 //! Robots that are away: a person has said that they are switched off, or out of the area of the fleet. Nobody waits to hear from such a robot.
 //! What it had stays reserved until it is removed, and as soon as it is heard again it is not away any more.
+//!
+//! And vehicles that are not away, and have not said where they stand: from the places where they may stand others keep away.
 
 use super::Supervisor;
 use crate::event::SupervisorEvent;
 use crate::journal_entry::JournalEntry;
 use crate::request_error::RequestError;
-use std::collections::BTreeSet;
+use std::collections::{BTreeMap, BTreeSet};
+
+/// A disc in which a vehicle may stand, all of it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct StandingPlace {
+    /// Centre \[m\].
+    pub x: f64,
+    /// \[m\]
+    pub y: f64,
+    /// Radius \[m\].
+    pub radius: f64,
+}
+
+/// A vehicle that has not said where it stands.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct UnplacedVehicle {
+    /// Why others wait for it, and what to do; `None` as long as it is too early to say so.
+    pub why: Option<String>,
+    /// Where it may stand, if that is known: others get no hold up to there, and stop if they have one. Where it is not known, this supervisor does
+    /// not know whom it may block.
+    pub places: Vec<StandingPlace>,
+}
 
 impl Supervisor {
+    /// Takes the vehicles that have not said where they stand, by name, in place of those before. Returns whether they are others.
+    pub fn set_unplaced(&mut self, unplaced: BTreeMap<String, UnplacedVehicle>) -> bool {
+        if unplaced == self.unplaced {
+            return false;
+        }
+        for (name, vehicle) in &unplaced {
+            let before = self.unplaced.get(name).and_then(|before| before.why.as_ref());
+            if let Some(why) = vehicle.why.as_ref().filter(|why| Some(*why) != before) {
+                self.events.push(SupervisorEvent::Unplaced { robot: name.clone(), why: why.clone() });
+            }
+        }
+        for (name, _) in self.unplaced.iter().filter(|(_, before)| before.why.is_some()) {
+            if unplaced.get(name).is_none_or(|vehicle| vehicle.why.is_none()) {
+                self.events.push(SupervisorEvent::Placed { robot: name.clone() });
+            }
+        }
+        self.unplaced = unplaced;
+        self.hazards = true;
+        true
+    }
+
+    /// The vehicles that others wait for because they have not said where they stand, with the reason in words.
+    pub fn unplaced(&self) -> impl Iterator<Item = (&str, &str)> {
+        self.unplaced.iter().filter_map(|(name, vehicle)| Some((name.as_str(), vehicle.why.as_deref()?)))
+    }
+
     /// Whether a robot, or a vehicle that is not in the supervisor yet, is away.
     pub fn is_away(&self, name: &str) -> bool {
         self.away.contains(name)

@@ -1,6 +1,6 @@
 //! Robots that are not where they may be: all others keep away from everywhere that such a robot can have reached.
 
-use super::{Supervisor, fleet};
+use super::{StandingPlace, Supervisor, fleet};
 use crate::event::SupervisorEvent;
 use crate::owned_path::{OwnedPath, StartPose};
 use crate::robot::{Alarm, ROOM, SupervisedRobot};
@@ -12,12 +12,26 @@ use pcr_planning::fleet::ConvexBody;
 pub(super) struct AlarmLimit {
     /// Length of the path \[m\]; `None`: no limit.
     pub(super) arc_length: Option<f64>,
-    /// Index of the robot that is not where it may be.
-    by: usize,
+    by: LimitCause,
+}
+
+/// Because of whom a robot may go no further.
+#[derive(Clone, Copy, Debug)]
+enum LimitCause {
+    /// The robot with this index, which is not where it may be.
+    Robot(usize),
+    /// A vehicle that has not said where it stands, by its index among those.
+    Unplaced(usize),
+}
+
+impl Default for LimitCause {
+    fn default() -> Self {
+        Self::Robot(0)
+    }
 }
 
 impl AlarmLimit {
-    fn lower(&mut self, at: f64, by: usize) {
+    fn lower(&mut self, at: f64, by: LimitCause) {
         if self.arc_length.is_none_or(|before| at < before) {
             *self = Self { arc_length: Some(at), by };
         }
@@ -34,14 +48,19 @@ impl Supervisor {
         self.lost(now, &mut limits);
         self.unordered(&mut limits);
         self.note_returned(now);
-        self.hazards = self.robots.iter().any(|robot| robot.alarm.is_some());
+        self.unsaid(&mut limits);
+        self.hazards = self.robots.iter().any(|robot| robot.alarm.is_some())
+            || self.unplaced.values().any(|vehicle| !vehicle.places.is_empty());
         for (place, limit) in limits.iter().enumerate() {
             let robot = &self.robots[place];
             // A robot that stands needs no `stop`. At the end of its path its length stays a little before that.
             let by = limit
                 .arc_length
                 .filter(|at| *at < robot.notified_limit && robot.notified_limit > robot.arc_length + 2.0 * ROOM);
-            let by = by.map(|_| self.robots[limit.by].name.clone());
+            let by = by.and_then(|_| match limit.by {
+                LimitCause::Robot(by) => Some(self.robots[by].name.clone()),
+                LimitCause::Unplaced(by) => self.unplaced.keys().nth(by).cloned(),
+            });
             self.hazards |= by.is_some();
             let robot = &mut self.robots[place];
             let name = robot.name.clone();
@@ -75,10 +94,33 @@ impl Supervisor {
             let radius = robot.abilities.radius_with_margin() + spread + gone;
             for (other, limit) in limits.iter_mut().enumerate().filter(|(other, _)| *other != place) {
                 if let Some(at) = self.meets(other, at, radius) {
-                    limit.lower(at, place);
+                    limit.lower(at, LimitCause::Robot(place));
                 }
             }
         }
+    }
+
+    /// Limits because of vehicles that have not said where they stand: each of the places where such a vehicle may stand counts as taken.
+    fn unsaid(&self, limits: &mut [AlarmLimit]) {
+        for (index, vehicle) in self.unplaced.values().enumerate() {
+            for place in &vehicle.places {
+                for (other, limit) in limits.iter_mut().enumerate() {
+                    if self.is_near(other, place)
+                        && let Some(at) = self.meets(other, [place.x, place.y], place.radius)
+                    {
+                        limit.lower(at, LimitCause::Unplaced(index));
+                    }
+                }
+            }
+        }
+    }
+
+    /// Whether a robot can come to a place on the rest of its path, by the length of that alone.
+    fn is_near(&self, place: usize, there: &StandingPlace) -> bool {
+        let robot = &self.robots[place];
+        let pose = robot.course.pose(robot.arc_length);
+        let rest = robot.course.length() - robot.arc_length + robot.abilities.radius_with_margin();
+        (pose.x - there.x).hypot(pose.y - there.y) <= rest + there.radius + ROOM
     }
 
     /// The first length from where a robot is at which it would touch a disc.
@@ -108,7 +150,7 @@ impl Supervisor {
             let row = fleet.as_ref().ok().and_then(|fleet| self.orders.row(fleet, place).ok());
             let Some(row) = row else {
                 // If it cannot be told with whom nothing is decided, it may be with anybody near.
-                limit.lower(self.robots[place].arc_length - ROOM, place);
+                limit.lower(self.robots[place].arc_length - ROOM, LimitCause::Robot(place));
                 continue;
             };
             let undecided = row.filter(|(_, _, pass)| *pass == PassingState::Undecided).map(|(_, region, _)| region);
@@ -119,8 +161,10 @@ impl Supervisor {
             for region in undecided.filter(|region| !left(region)) {
                 match region.hold(0.0, 0.0) {
                     MovementAuthority::Free => {}
-                    MovementAuthority::At(hold) => limit.lower(hold, region.other()),
-                    MovementAuthority::Inside => limit.lower(self.robots[place].arc_length - ROOM, region.other()),
+                    MovementAuthority::At(hold) => limit.lower(hold, LimitCause::Robot(region.other())),
+                    MovementAuthority::Inside => {
+                        limit.lower(self.robots[place].arc_length - ROOM, LimitCause::Robot(region.other()))
+                    }
                 }
             }
         }

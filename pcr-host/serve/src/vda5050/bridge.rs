@@ -5,10 +5,10 @@ use super::vehicle_adapter::{OutboundMessage, Recipient, SendCondition, VehicleA
 use crate::bridge_status::BridgeCounters;
 use crate::event::SupervisorEvent;
 use crate::robot::SupervisedRobot;
-use crate::supervisor::{JournalError, Supervisor};
+use crate::supervisor::{JournalError, Supervisor, UnplacedVehicle};
 use pcr_formats::vda5050::decode::MessageLimits;
 use pcr_formats::vda5050::topics::{TopicInterface, TopicKind, VehicleId};
-use std::collections::{BTreeSet, HashMap};
+use std::collections::{BTreeMap, BTreeSet, HashMap};
 
 /// Settings of a bridge.
 #[derive(Clone, Debug)]
@@ -78,9 +78,17 @@ pub struct Vda5050Bridge {
     looked: f64,
     /// Why no vehicle is released anything.
     unready: Option<String>,
-    /// Names of the vehicles that have not said where they stand.
-    unplaced: Vec<String>,
+    /// Names of the vehicles that others wait for, with the time since which they do \[s\].
+    unplaced: BTreeMap<String, f64>,
+    /// What the manager was told of them, and the lanes that have to tell it.
+    notices: Vec<[String; 2]>,
+    noticed: BTreeSet<usize>,
+    /// Which vehicles are away, or not, by their configuration, until the supervisor knows.
+    declarations: Option<Vec<(String, bool)>>,
 }
+
+/// Time that a vehicle has to say where it stands, before that is told \[s\].
+const GRACE: f64 = 0.5;
 
 /// Time between two reminders of missing vehicles \[s\].
 const REMINDER: f64 = 30.0;
@@ -100,6 +108,8 @@ impl Vda5050Bridge {
     ) -> Result<Self, JournalError> {
         let lanes = profiles.into_iter().map(|profile| VehicleAdapter::new(profile, supervisor));
         let lanes: Vec<VehicleAdapter> = lanes.collect::<Result<_, _>>()?;
+        let declared = |lane: &VehicleAdapter| Some((lane.name().to_owned(), lane.profile().away?));
+        let declarations = lanes.iter().filter_map(declared).collect();
         let places = lanes.iter().enumerate().map(|(place, lane)| (lane.profile().key.clone(), place)).collect();
         Ok(Self {
             settings,
@@ -113,7 +123,10 @@ impl Vda5050Bridge {
             log: Vec::new(),
             said: 0.0,
             unready: Some("the broker has not been reached, or another supervisor is at work".into()),
-            unplaced: Vec::new(),
+            unplaced: BTreeMap::new(),
+            notices: Vec::new(),
+            noticed: BTreeSet::new(),
+            declarations: Some(declarations),
             looked: f64::NEG_INFINITY,
         })
     }
@@ -220,6 +233,7 @@ impl Vda5050Bridge {
     /// Handles what the supervisor has decided, and the events since the last call. The resulting messages to vehicles may be
     /// sent once the supervisor has settled.
     pub fn settled(&mut self, supervisor: &mut Supervisor, events: &[SupervisorEvent], now: f64) {
+        self.declare(supervisor);
         self.on_events(events);
         self.compare_supervisor(supervisor);
         if now >= self.looked + LOOK {
@@ -227,9 +241,7 @@ impl Vda5050Bridge {
             self.touched.extend(0..self.lanes.len());
         }
         let touched = std::mem::take(&mut self.touched);
-        // A vehicle without a position may stand anywhere, and one that is larger than its disc may be in the way of any other.
-        let is_sure = |lane: &VehicleAdapter| lane.misfit().is_none() && !lane.is_doubtful();
-        let is_known = self.seen.unknown.is_empty() && self.lanes.iter().all(is_sure);
+        let is_known = self.note_unplaced(supervisor, now);
         for &place in &touched {
             let lane = &mut self.lanes[place];
             lane.pause(supervisor, now);
@@ -238,43 +250,73 @@ impl Vda5050Bridge {
             }
         }
         self.collect(&touched);
-        self.unplaced = if is_known { Vec::new() } else { self.names_unplaced() };
-        self.unready = (!is_known).then(|| self.why_unready());
-        if !is_known && now >= self.said + REMINDER {
+        if now >= self.said + REMINDER {
             self.said = now;
-            if !self.unplaced.is_empty() {
-                let names = self.unplaced.join(", ");
-                self.log.push(format!("nobody is released anything until these have said where they stand: {names}"));
+            self.log.extend(supervisor.unplaced().map(|(name, why)| format!("{name} {why}")));
+        }
+    }
+
+    /// Finds the vehicles that others wait for, and tells the supervisor and the manager of them. Returns whether anything may be released: as long
+    /// as it is not known where one may stand, it may be in the way of any other.
+    fn note_unplaced(&mut self, supervisor: &mut Supervisor, now: f64) -> bool {
+        let (mut unplaced, mut reasons) = (BTreeMap::new(), Vec::new());
+        for (place, lane) in self.lanes.iter().enumerate() {
+            let is_unknown = self.seen.unknown.contains(&place);
+            let Some(reason) = lane.waited_for(supervisor, is_unknown) else { continue };
+            if reason.places.is_empty() {
+                reasons.push(format!("{} {}", lane.name(), reason.why));
             }
-            let unknown = self.seen.unknown.iter().map(|&place| &self.lanes[place]);
-            let elsewhere = unknown.filter_map(|lane| Some((lane.name(), lane.elsewhere()?.to_owned())));
-            let misfits = self.lanes.iter().filter_map(|lane| Some((lane.name(), lane.misfit()?)));
-            for (name, why) in elsewhere.chain(misfits) {
-                self.log.push(format!("nobody is released anything: {name}: {why}"));
+            let since = self.unplaced.get(lane.name()).map_or(now, |since| since.min(now));
+            let why = (now - since >= GRACE).then_some(reason.why);
+            unplaced.insert(lane.name().to_owned(), (since, UnplacedVehicle { why, places: reason.places }));
+        }
+        self.unplaced = unplaced.iter().map(|(name, (since, _))| (name.clone(), *since)).collect();
+        let vehicles = unplaced.into_iter().map(|(name, (_, vehicle))| (name, vehicle)).collect();
+        if supervisor.set_unplaced(vehicles) && now.is_finite() {
+            // Nothing is released by what was decided before.
+            supervisor.decide(now);
+        }
+        let notices: Vec<[String; 2]> = supervisor.unplaced().map(|it| [it.0.to_owned(), it.1.to_owned()]).collect();
+        if notices != self.notices {
+            for (place, lane) in self.lanes.iter_mut().enumerate() {
+                lane.notice(notices.clone());
+                self.noticed.insert(place);
             }
+            self.notices = notices;
+        }
+        let noticed = std::mem::take(&mut self.noticed);
+        self.collect(&noticed);
+        self.unready = (!reasons.is_empty()).then(|| reasons.join("; "));
+        reasons.is_empty()
+    }
+
+    /// Tells the supervisor which vehicles there are, which of them are away, and which have not said where they stand: before it decides, and while
+    /// nothing may be sent.
+    pub fn prepare(&mut self, supervisor: &mut Supervisor) {
+        self.declare(supervisor);
+        self.compare_supervisor(supervisor);
+        // How long they have not said it counts from when the bridge works.
+        self.note_unplaced(supervisor, f64::INFINITY);
+    }
+
+    /// Tells the supervisor which vehicles there are, and which of them are away by their configuration: once.
+    fn declare(&mut self, supervisor: &mut Supervisor) {
+        if let Some(away) = self.declarations.take() {
+            let names = self.lanes.iter().map(|lane| lane.name().to_owned()).collect();
+            // The names are expected, and after a broken journal nothing is told.
+            let _ = supervisor.expect(names);
+            for (name, away) in away {
+                let _ = supervisor.set_away(&name, away);
+            }
+        }
+        for lane in &mut self.lanes {
+            lane.follow_absence(supervisor);
         }
     }
 
     /// Returns why no vehicle is released anything, if so.
     pub fn unready(&self) -> Option<String> {
         self.unready.clone()
-    }
-
-    /// Returns the names of the vehicles that have not said where they stand, as of the last time that it settled.
-    pub fn unplaced(&self) -> &[String] {
-        &self.unplaced
-    }
-
-    fn names_unplaced(&self) -> Vec<String> {
-        let doubtful = self.lanes.iter().filter(|lane| lane.is_doubtful()).map(VehicleAdapter::name);
-        let unknown = self.seen.unknown.iter().map(|&place| self.lanes[place].name());
-        unknown.chain(doubtful).map(str::to_owned).collect()
-    }
-
-    fn why_unready(&self) -> String {
-        let unplaced = self.unplaced.iter().map(|name| format!("{name} has not said where it stands"));
-        let misfits = self.lanes.iter().filter_map(|lane| Some(format!("{}: {}", lane.name(), lane.misfit()?)));
-        unplaced.chain(misfits).collect::<Vec<_>>().join("; ")
     }
 
     /// Compares the rights of all robots with those seen before, and finds the vehicles that are not in the supervisor.

@@ -142,12 +142,7 @@ impl BrokerSession {
 
     /// Returns what the metrics say of the connection and of the bridge.
     pub fn status(&self, bridge: &Vda5050Bridge) -> BridgeStatus {
-        BridgeStatus {
-            connected: self.link.is_up(),
-            active: self.works(),
-            counts: bridge.counts(),
-            unplaced: bridge.unplaced().to_vec(),
-        }
+        BridgeStatus { connected: self.link.is_up(), active: self.works(), counts: bridge.counts() }
     }
 
     /// Waits for messages and handles them. Another thread owns the supervisor, whose events come by a queue. Returns messages for the log:
@@ -285,6 +280,7 @@ fn answered(
     }
     if !works {
         bridge.on_events(told);
+        bridge.prepare(supervisor);
         return Vec::new();
     }
     supervisor.decide(now);
@@ -339,7 +335,13 @@ mod tests {
         let abilities =
             crate::robot::RobotTraits { radius: 0.4, footprint: None, margin: 0.1, speed: 1.0, acceleration: 0.5 };
         let settings = super::super::bridge::BridgeConfig { manager, vehicles, limits: Default::default() };
-        let profile = super::super::vehicle_adapter::VehicleConfig { key, abilities, split: true };
+        let profile = super::super::vehicle_adapter::VehicleConfig {
+            key,
+            abilities,
+            split: true,
+            away: None,
+            places: Vec::new(),
+        };
         let mut bridge = Vda5050Bridge::new(settings, vec![profile], &supervisor).unwrap();
         let begin = Instant::now();
         let board = Telemetry::new(begin);

@@ -4,6 +4,7 @@
 //! its base cut to the part that the supervisor has allowed, and with its own numbers of nodes and updates, because the
 //! base may end in the middle of an edge. Reports of the vehicle are sent to the manager with the manager's numbers.
 
+mod absence;
 mod actions;
 mod interim;
 mod job;
@@ -23,7 +24,7 @@ mod vehicle_messages;
 pub use job::ActiveOrder;
 
 use crate::robot::RobotTraits;
-use crate::supervisor::{JournalError, Supervisor};
+use crate::supervisor::{JournalError, StandingPlace, Supervisor};
 use interim::Interim;
 use journal_notes::noted;
 use pause::VehiclePauses;
@@ -38,6 +39,7 @@ use serde::Serialize;
 use std::collections::BTreeMap;
 use std::sync::Arc;
 use used_ids::{NoteChange, UsedIds};
+use vehicle_messages::PositionSource;
 
 /// The configuration of a vehicle.
 #[derive(Clone, Debug, PartialEq)]
@@ -48,6 +50,10 @@ pub struct VehicleConfig {
     pub abilities: RobotTraits,
     /// Whether it can stop in the middle of straight edges, and not at nodes only.
     pub split: bool,
+    /// Whether it is away at the start; `None`: as the journal says.
+    pub away: Option<bool>,
+    /// Where its reference point may be as long as it has not said where it stands: discs around the places where it is switched on. Empty: anywhere.
+    pub places: Vec<StandingPlace>,
 }
 
 /// The receiver of a message.
@@ -127,6 +133,10 @@ pub struct VehicleAdapter {
     elsewhere: Option<String>,
     /// Whether it was seated by a state that may be from before the start.
     is_doubtful: bool,
+    /// Whether it is away, as it was known last.
+    is_away: bool,
+    /// Vehicles for which others wait, and why.
+    notices: Vec<[String; 2]>,
     /// What is to be told of its orders in the log.
     remarks: Vec<String>,
 }
@@ -169,6 +179,8 @@ impl VehicleAdapter {
             needs,
             elsewhere: None,
             is_doubtful,
+            is_away: false,
+            notices: Vec::new(),
             remarks: Vec::new(),
         })
     }
@@ -202,11 +214,6 @@ impl VehicleAdapter {
             Some(_) => format!("the vehicle reaches {needs:.3} m beyond its outline"),
             None => format!("the vehicle needs a disc of {needs} m, not {own}"),
         })
-    }
-
-    /// Whether its place may be one from before the start of the supervisor.
-    pub(crate) fn is_doubtful(&self) -> bool {
-        self.is_doubtful
     }
 
     /// Takes what is to be told in the log.

@@ -71,5 +71,5 @@ pub fn profile(key: VehicleId, can: &SimulatedTraits) -> VehicleConfig {
     let footprint = can.footprint();
     let radius = footprint.as_ref().map_or(can.radius, Footprint::circumscribed_radius);
     let abilities = robot::RobotTraits { radius, footprint, margin, speed: can.speed, acceleration: can.acceleration };
-    VehicleConfig { key, abilities, split: true }
+    VehicleConfig { key, abilities, split: true, away: None, places: Vec::new() }
 }

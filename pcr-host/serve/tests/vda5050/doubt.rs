@@ -505,7 +505,12 @@ fn a_vehicle_that_is_larger_than_its_disc_is_released_nothing_nor_is_anybody_els
     own.time += 31.0;
     own.turn();
     let log = own.bridge.log().join("\n");
-    assert!(log.contains("nobody is released anything: sim/001: the vehicle needs a disc of 0.9"), "{log}");
+    assert!(
+        log.contains(
+            "sim/001 is not as the file says, so no vehicle is released anything: the vehicle needs a disc of 0.9"
+        ),
+        "{log}"
+    );
     // What was written before is older.
     let mut older = sheet.clone();
     older["timestamp"] = json!("2020-01-01T00:00:00.000Z");

@@ -316,7 +316,9 @@ fn who_is_missing_is_said() {
     own.supervisor = supervisor;
     own.bridge = bridge_of(&own.supervisor);
     own.bridge.settled(&mut own.supervisor, &[], 31.0);
-    assert_eq!(own.bridge.log(), ["nobody is released anything until these have said where they stand: sim/001"]);
+    own.bridge.settled(&mut own.supervisor, &[], 62.0);
+    let why = "sim/001 has not said where it stands, so no vehicle is released anything: switch it on, or say that it is away";
+    assert_eq!(own.bridge.log(), [why]);
 }
 
 fn standstills(events: Vec<SupervisorEvent>) -> Vec<String> {

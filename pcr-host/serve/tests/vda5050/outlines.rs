@@ -254,7 +254,8 @@ fn a_truck_that_reaches_beyond_its_outline_keeps_all_from_moving() {
     own.lasts(35.0);
     assert!(!own.is_done(1, "b"));
     assert!(
-        own.log.iter().any(|line| line.contains("sim/0: the vehicle reaches 0.050 m beyond its outline")),
+        own.log.iter().any(|line| line.contains("sim/0 is not as the file says")
+            && line.contains("reaches 0.050 m beyond its outline")),
         "{:?}",
         own.log
     );

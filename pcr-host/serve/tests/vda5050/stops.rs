@@ -150,7 +150,7 @@ fn the_first_order_is_sent_to_a_vehicle_with_an_alarm() {
 #[test]
 fn what_is_too_large_is_not_sent_and_the_log_says_so_once() {
     let [manager, vehicles] = interfaces();
-    let limits = MessageLimits { sent: 900, ..MessageLimits::default() };
+    let limits = MessageLimits { sent: 1100, ..MessageLimits::default() };
     let mut own = driving();
     own.supervisor = Supervisor::new(settings(), Box::new(NullStore));
     let topics = bridge::BridgeConfig { manager, vehicles, limits };
@@ -162,9 +162,9 @@ fn what_is_too_large_is_not_sent_and_the_log_says_so_once() {
         (!own.told.is_null(), log)
     };
     assert_eq!(states(&mut own), (true, Vec::new()));
-    own.state["information"] = json!([{ "infoType": "x".repeat(900), "infoLevel": "INFO" }]);
+    own.state["information"] = json!([{ "infoType": "x".repeat(1100), "infoLevel": "INFO" }]);
     let (is_told, log) = states(&mut own);
-    assert!(!is_told && log.len() == 1 && log[0].contains("bytes; at most 900 are sent"), "{log:?}");
+    assert!(!is_told && log.len() == 1 && log[0].contains("bytes; at most 1100 are sent"), "{log:?}");
     own.state["information"] = json!([]);
     assert_eq!(states(&mut own), (true, Vec::new()));
 }

@@ -9,9 +9,10 @@ use pcr_formats::vda5050::decode::MessageLimits;
 use pcr_formats::vda5050::topics::{TopicInterface, VehicleId};
 use pcr_serve::http::Readiness;
 use pcr_serve::log::{LogLevel, LogWriter};
+use pcr_serve::owned_path::{OwnedPath, StartPose};
 use pcr_serve::robot::RobotTraits;
 use pcr_serve::server::{ServerHandle, ServerInput};
-use pcr_serve::supervisor::Supervisor;
+use pcr_serve::supervisor::{StandingPlace, Supervisor};
 use pcr_serve::vda5050::bridge::{BridgeConfig, Vda5050Bridge};
 use pcr_serve::vda5050::broker_session::{BrokerSession, SessionEnd};
 use pcr_serve::vda5050::mqtt::BrokerAddress;
@@ -88,8 +89,18 @@ fn profiles(file: &Path) -> Result<Vec<VehicleConfig>, CliError> {
 
 fn profile(value: &Value) -> Result<VehicleConfig, String> {
     let Value::Object(members) = value else { return Err("an object is expected".into()) };
-    const KNOWN: [&str; 8] =
-        ["manufacturer", "serialNumber", "radius", "footprint", "margin", "speed", "acceleration", "split"];
+    const KNOWN: [&str; 10] = [
+        "manufacturer",
+        "serialNumber",
+        "radius",
+        "footprint",
+        "margin",
+        "speed",
+        "acceleration",
+        "split",
+        "away",
+        "places",
+    ];
     if let Some(unknown) = members.keys().find(|name| !KNOWN.contains(&name.as_str())) {
         return Err(format!("{unknown}: unknown; {} are read", KNOWN.join(", ")));
     }
@@ -118,8 +129,38 @@ fn profile(value: &Value) -> Result<VehicleConfig, String> {
         None => true,
         Some(split) => split.as_bool().ok_or("split: true or false is expected")?,
     };
+    let away = value.get("away").map(|away| away.as_bool().ok_or("away: true or false is expected")).transpose()?;
+    let places = value.get("places").map_or(Ok(Vec::new()), places)?;
     let key = VehicleId::new(text("manufacturer")?, text("serialNumber")?).map_err(|wrong| wrong.to_string())?;
-    Ok(VehicleConfig { key, abilities, split })
+    Ok(VehicleConfig { key, abilities, split, away, places })
+}
+
+/// Where a vehicle may stand as long as it has not said where it does.
+fn places(value: &Value) -> Result<Vec<StandingPlace>, String> {
+    /// Largest distance from a place \[m\].
+    const MOST: f64 = 1e4;
+    let list = value.as_array().filter(|list| !list.is_empty()).ok_or("places: a list with a place is expected")?;
+    let place = |(k, place): (usize, &Value)| {
+        let wrong = |why: &str| format!("places[{k}]: {why}");
+        let members = place.as_object().ok_or_else(|| wrong("an object is expected"))?;
+        let number = |name: &str| {
+            let number = members.get(name).and_then(Value::as_f64);
+            number.ok_or_else(|| wrong(&format!("{name}: a number is expected")))
+        };
+        if members.len() > 3 {
+            return Err(wrong("x, y and within are read"));
+        }
+        let (x, y, radius) = (number("x")?, number("y")?, number("within")?);
+        if !(0.0..=MOST).contains(&radius) {
+            return Err(wrong(&format!("within: {radius} is out of range; allowed is 0 to {MOST}")));
+        }
+        // As far as paths may be.
+        if OwnedPath::new(StartPose { x, y, heading: 0.0 }, Vec::new()).is_err() {
+            return Err(wrong("x, y: out of range"));
+        }
+        Ok(StandingPlace { x, y, radius })
+    };
+    list.iter().enumerate().map(place).collect()
 }
 
 /// Whether the journal knows the vehicles as the file does: orders were made for discs as they were.
@@ -154,7 +195,7 @@ pub(super) struct BridgeThread {
 /// Starts the bridge.
 pub(super) fn start(
     handle: &ServerHandle,
-    supervisor: &Supervisor,
+    supervisor: &mut Supervisor,
     fleet: BridgeFleetConfig,
     log: LogWriter,
 ) -> Result<BridgeThread, CliError> {
@@ -171,8 +212,9 @@ pub(super) fn start(
         }
     }
     let settings = BridgeConfig { manager, vehicles: vehicles.clone(), limits: MessageLimits::default() };
-    let bridge = Vda5050Bridge::new(settings, profiles, supervisor)
+    let mut bridge = Vda5050Bridge::new(settings, profiles, supervisor)
         .map_err(|why| CliError::arguments(format!("the journal: {why}")))?;
+    bridge.prepare(supervisor);
     let now = SystemTime::now().duration_since(UNIX_EPOCH).map_or(0, |since| since.as_nanos());
     let session = format!("{}-{now:x}", std::process::id());
     let mut station = BrokerSession::open(&broker, &vehicles, &bridge, &session)

@@ -34,9 +34,9 @@ pub(super) fn run(arguments: ServeArgs) -> Result<ExitCode, CliError> {
         supervisor.draw(demo.drawn().clone()).map_err(|fault| CliError::Error(fault.to_string(), NOT_WRITTEN))?;
     }
     let ends = match &demo {
-        Some(demo) => Some(bridge::start(&handle, &supervisor, demo.fleet(), log)?),
+        Some(demo) => Some(bridge::start(&handle, &mut supervisor, demo.fleet(), log)?),
         None => bridge::BridgeFleetConfig::of(&arguments, log)?
-            .map(|fleet| bridge::start(&handle, &supervisor, fleet, log))
+            .map(|fleet| bridge::start(&handle, &mut supervisor, fleet, log))
             .transpose()?,
     };
     let _sockets = listen::start(&arguments, &handle, log)?;

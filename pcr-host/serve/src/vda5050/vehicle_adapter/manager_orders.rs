@@ -63,6 +63,9 @@ impl VehicleAdapter {
         if self.version.is_some_and(|own| own.major() != version.major()) {
             return Err(DecodeError::new("version", "not that of the vehicle").into());
         }
+        if supervisor.is_away(&self.name) {
+            return Err(RejectedOrder::new(OrderRejection::Order, "", "the vehicle is away"));
+        }
         self.passable(supervisor, &order)?;
         if supervisor.robot(&self.name).is_err() {
             return Err(RejectedOrder::new(OrderRejection::Order, "", "the vehicle has not yet said where it stands"));

@@ -28,7 +28,7 @@ const AHEAD: usize = 60;
 impl VehicleAdapter {
     /// Sends the vehicle its next update, according to what the supervisor has granted.
     pub fn release(&mut self, supervisor: &mut Supervisor, now: f64) {
-        let Some(version) = self.version else { return };
+        let Some(version) = self.version.filter(|_| !self.is_away) else { return };
         self.follow_cancel(now);
         let (Some(state), Ok(robot)) = (&self.state, supervisor.robot(&self.name)) else { return };
         let Some(job) = &mut self.job else { return };

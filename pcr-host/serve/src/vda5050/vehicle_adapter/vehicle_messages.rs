@@ -7,6 +7,7 @@ use super::order_termination::KEPT;
 use super::recency::{Recency, RecencyFilter};
 use super::{ActiveOrder, DOUBTFUL, VehicleAdapter};
 use crate::owned_path::StartPose;
+use crate::request_error::RequestError;
 use crate::robot::{BACK, SupervisedRobot};
 use crate::supervisor::{PositionReport, Supervisor};
 use pcr_formats::vda5050::decode::{self, DecodeError, MessageLimits};
@@ -23,7 +24,7 @@ const OLDEST: f64 = 1e6;
 
 /// The kind of message with a position.
 #[derive(Clone, Copy, Debug, PartialEq)]
-enum PositionSource {
+pub(super) enum PositionSource {
     /// The newest state.
     Newest,
     /// A message between states, after the newest one.
@@ -51,6 +52,7 @@ impl VehicleAdapter {
     ) -> Result<(), DecodeError> {
         let state: State = decode::read(bytes, limits)?;
         let version = state.header.check(&self.profile.key, is_third)?;
+        self.follow_absence(supervisor);
         let newest = self.newest.entry(TopicKind::State).or_default();
         let place = newest.take(&state.header, now, |action| state.names(action));
         if newest.is_in_doubt(now) {
@@ -162,17 +164,16 @@ impl VehicleAdapter {
         // What is doubtful may begin an alarm, but changes none.
         let has_alarm = supervisor.robot(&self.name).is_ok_and(|robot| robot.alarm.is_some());
         let alarms = is_new || with == PositionSource::Doubtful && !has_alarm;
+        if supervisor.is_away(&self.name) && with != PositionSource::Late {
+            self.shares(supervisor, &pose.map_id)?;
+            self.comes_back(supervisor, pose, self.is_still(state), with, now);
+        }
         let Ok(robot) = supervisor.robot(&self.name) else {
             if alarms && self.is_still(state) && self.remaining_margin(pose) >= 0.0 {
                 self.shares(supervisor, &pose.map_id)?;
                 let start = StartPose { x: pose.x, y: pose.y, heading: pose.theta };
-                // If it cannot stand there, the next state is tried again. An order that it had is void.
-                if supervisor.add(&self.name, self.profile.abilities.clone(), start).is_ok() {
-                    (self.job, self.astray) = (None, None);
-                    self.note_anew(supervisor);
-                    self.note(supervisor, MAP, &pose.map_id);
-                    self.doubts(supervisor, !is_new);
-                }
+                // If it cannot stand there, the next state is tried again.
+                let _ = self.seat(supervisor, start, &pose.map_id, with);
             }
             return Ok(());
         };
@@ -250,6 +251,25 @@ impl VehicleAdapter {
             None if alarms => self.strays(supervisor, at, with, now),
             None => {}
         }
+        Ok(())
+    }
+
+    /// Adds the vehicle to the supervisor where it stands. An order that it had is void.
+    ///
+    /// # Errors
+    /// [`RequestError`] if it cannot stand there.
+    pub(super) fn seat(
+        &mut self,
+        supervisor: &mut Supervisor,
+        start: StartPose,
+        map: &str,
+        with: PositionSource,
+    ) -> Result<(), RequestError> {
+        supervisor.add(&self.name, self.profile.abilities.clone(), start)?;
+        (self.job, self.astray) = (None, None);
+        self.note_anew(supervisor);
+        self.note(supervisor, MAP, map);
+        self.doubts(supervisor, with == PositionSource::Doubtful);
         Ok(())
     }
 
