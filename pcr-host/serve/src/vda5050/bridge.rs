@@ -41,8 +41,8 @@ pub struct PendingPublish {
     pub message: MqttMessage,
     /// When it may be sent.
     pub due: SendCondition,
-    /// Index of its lane.
-    vehicle_index: usize,
+    /// The vehicle that it is to or about.
+    vehicle: VehicleId,
 }
 
 /// The state of a robot on which the messages to its vehicle depend: number of its path, hold, whether it is stopped.
@@ -290,6 +290,70 @@ impl Vda5050Bridge {
         reasons.is_empty()
     }
 
+    /// Takes other vehicles in place of those that it has, all or nothing, while it works. Added ones have to say where they stand, if they are not
+    /// away. Returns the names of those that were added, and of those that were left out.
+    ///
+    /// # Errors
+    /// What cannot be changed now, in words: a vehicle that has a place can neither be left out nor have other abilities. Nothing has changed then.
+    pub fn reload(
+        &mut self,
+        supervisor: &mut Supervisor,
+        profiles: Vec<VehicleConfig>,
+    ) -> Result<[Vec<String>; 2], String> {
+        let has_place = |lane: &&VehicleAdapter| supervisor.robot(lane.name()).is_ok();
+        let is_left_out = |lane: &&VehicleAdapter| profiles.iter().all(|profile| profile.key != lane.profile().key);
+        if let Some(lane) = self.lanes.iter().find(|lane| is_left_out(lane) && has_place(lane)) {
+            return Err(format!(
+                "{}: it has a place, so it cannot be left out: say that it was removed (verb `remove`) before",
+                lane.name()
+            ));
+        }
+        let left_out: Vec<String> = self.lanes.iter().filter(is_left_out).map(|lane| lane.name().to_owned()).collect();
+        let (mut added, mut anew, mut declarations) = (Vec::new(), Vec::new(), Vec::new());
+        for profile in &profiles {
+            let name = profile.key.to_string();
+            if supervisor.robot(&name).is_ok_and(|robot| robot.abilities != profile.abilities) {
+                return Err(format!(
+                    "{name}: it has a place, so radius, footprint, margin, speed and acceleration stay as they are: say that it was removed (verb \
+                     `remove`) before"
+                ));
+            }
+            profile.abilities.body(false).map_err(|why| format!("{name}: {why}"))?;
+            let before = self.places.get(&profile.key).map(|&place| self.lanes[place].profile().away);
+            if before.is_none() {
+                let lane = VehicleAdapter::new(profile.clone(), supervisor).map_err(|why| format!("{name}: {why}"))?;
+                anew.push(lane);
+                added.push(name.clone());
+            }
+            // What the file said before may have been overtaken since.
+            if before != Some(profile.away) && (profile.away.is_some() || before.is_some()) {
+                declarations.push((name, profile.away.unwrap_or(false)));
+            }
+        }
+        // From here on nothing fails.
+        self.lanes.retain(|lane| !is_left_out(&lane));
+        for lane in &mut self.lanes {
+            let profile = profiles.iter().find(|profile| profile.key == lane.profile().key);
+            profile.into_iter().for_each(|profile| lane.reconfigure(profile.clone()));
+        }
+        for mut lane in anew {
+            lane.ask_for("stateRequest");
+            lane.notice(self.notices.clone());
+            self.lanes.push(lane);
+        }
+        self.places = self.lanes.iter().enumerate().map(|(place, lane)| (lane.profile().key.clone(), place)).collect();
+        self.touched = (0..self.lanes.len()).collect();
+        self.noticed.clone_from(&self.touched);
+        (self.seen, self.large) = (SupervisorSnapshot::default(), BTreeSet::new());
+        // A declaration that was not made yet is in the new list, too, or was for one that was left out.
+        let mut all = self.declarations.take().unwrap_or_default();
+        all.retain(|(name, _)| !left_out.contains(name) && declarations.iter().all(|(other, _)| other != name));
+        all.extend(declarations);
+        self.declarations = Some(all);
+        self.prepare(supervisor);
+        Ok([added, left_out])
+    }
+
     /// Tells the supervisor which vehicles there are, which of them are away, and which have not said where they stand: before it decides, and while
     /// nothing may be sent.
     pub fn prepare(&mut self, supervisor: &mut Supervisor) {
@@ -372,7 +436,7 @@ impl Vda5050Bridge {
             out.push(PendingPublish {
                 message: MqttMessage { topic, payload, at_least_once: assured, retain },
                 due,
-                vehicle_index: place,
+                vehicle: key,
             });
         }
     }
@@ -391,7 +455,9 @@ impl Vda5050Bridge {
     /// Withholds a message that would let a vehicle go on that was told to stop since, and returns whether it does. What the manager has
     /// asked for in it is sent when the vehicle may go.
     pub fn withholds(&mut self, out: &PendingPublish) -> bool {
-        let lane = &mut self.lanes[out.vehicle_index];
+        // One that was left out of the file since has no order.
+        let Some(&place) = self.places.get(&out.vehicle) else { return true };
+        let lane = &mut self.lanes[place];
         let withheld = out.due == SendCondition::Free && lane.has_to_stop();
         if withheld {
             lane.withhold_stop_pause(&out.message.payload);

@@ -195,6 +195,11 @@ impl VehicleAdapter {
         &self.profile
     }
 
+    /// Takes another configuration.
+    pub(crate) fn reconfigure(&mut self, profile: VehicleConfig) {
+        self.profile = profile;
+    }
+
     /// Its present or last order.
     pub fn job(&self) -> Option<&ActiveOrder> {
         self.job.as_ref()

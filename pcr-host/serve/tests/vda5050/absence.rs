@@ -304,3 +304,77 @@ fn one_that_is_away_keeps_its_place_until_it_is_removed() {
     own.waits(3.0);
     assert!(own.granted("sim/1") > 9.9 && own.unplaced().is_empty());
 }
+
+impl Absence {
+    /// The file of vehicles is read again.
+    fn reload(&mut self, profiles: &[VehicleConfig]) -> Result<[Vec<String>; 2], String> {
+        let taken = self.bridge.reload(&mut self.supervisor, profiles.to_vec());
+        if taken.is_ok() {
+            self.profiles = profiles.to_vec();
+        }
+        self.waits(0.2);
+        taken
+    }
+}
+
+/// A restart was needed, and everybody stood.
+#[test]
+fn vehicles_are_added_left_out_and_away_without_a_restart() {
+    let mut own = Absence::new(Some(true), &[]);
+    own.stands("1", [0.0, 0.0]);
+    own.order("1", "a", 0.0, 10.0);
+    own.waits(0.2);
+    assert!(own.bridge.unready().is_none() && own.granted("sim/1") > 9.9);
+    let orders = own.orders("1");
+    assert!(orders > 0);
+    // A third one is waited for until it says where it stands; then it has orders, too.
+    let [first, second] = [own.profiles[0].clone(), own.profiles[1].clone()];
+    let third = VehicleConfig { away: None, ..profile(key("3"), &CAN) };
+    assert_eq!(own.reload(&[third.clone(), first.clone(), second.clone()]), Ok([vec!["sim/3".into()], Vec::new()]));
+    assert!(own.bridge.unready().unwrap().contains("sim/3") && own.supervisor.is_away("sim/2"));
+    own.stands("3", [0.0, 20.0]);
+    own.waits(0.2);
+    assert!(own.bridge.unready().is_none());
+    // What was under way goes on.
+    assert!(own.bridge.lanes().any(|lane| lane.name() == "sim/1" && lane.job().is_some()));
+    // The second one is not away, and the file does not say so again after it came back by itself.
+    let back = VehicleConfig { away: None, ..second.clone() };
+    own.reload(&[first.clone(), third.clone(), back.clone()]).unwrap();
+    assert!(!own.supervisor.is_away("sim/2") && own.bridge.unready().unwrap().contains("sim/2"));
+    own.reload(&[first.clone(), third.clone(), second.clone()]).unwrap();
+    assert!(own.supervisor.is_away("sim/2") && own.bridge.unready().is_none());
+    own.stands("2", [0.0, 30.0]);
+    own.reload(&[first.clone(), third, second]).unwrap();
+    assert!(!own.supervisor.is_away("sim/2"), "the file says what it said before");
+    // Whoever was removed can be left out, and is not there after a restart.
+    own.supervisor.remove("sim/2").unwrap();
+    own.supervisor.remove("sim/3").unwrap();
+    assert_eq!(own.reload(&[first]), Ok([Vec::new(), vec!["sim/2".into(), "sim/3".into()]]));
+    assert!(own.bridge.unready().is_none() && own.unplaced().is_empty());
+    own.restart();
+    own.stands("1", [0.0, 0.0]);
+    assert!(own.bridge.unready().is_none() && own.supervisor.robots().len() == 1);
+}
+
+#[test]
+fn what_cannot_be_changed_while_it_works_is_named_and_nothing_changes() {
+    let mut own = Absence::new(None, &[]);
+    own.stands("1", [0.0, 0.0]);
+    own.stands("2", [0.0, 20.0]);
+    let before = own.profiles.clone();
+    let mut larger = before.clone();
+    larger[1].abilities.radius = 0.9;
+    larger.push(profile(key("3"), &CAN));
+    let why = own.reload(&larger).unwrap_err();
+    assert!(why.starts_with("sim/2: it has a place, so radius, "), "{why}");
+    let why = own.reload(&[before[0].clone(), profile(key("3"), &CAN)]).unwrap_err();
+    assert!(why.starts_with("sim/2: it has a place, so it cannot be left out: "), "{why}");
+    let names: Vec<&str> = own.bridge.lanes().map(|lane| lane.name()).collect();
+    assert_eq!((names, own.bridge.unready()), (vec!["sim/1", "sim/2"], None));
+    // Once it was carried out, it may come back as another one.
+    own.supervisor.remove("sim/2").unwrap();
+    larger.truncate(2);
+    own.reload(&larger).unwrap();
+    own.stands("2", [0.0, 20.0]);
+    assert_eq!(own.supervisor.robot("sim/2").unwrap().abilities.radius, 0.9);
+}

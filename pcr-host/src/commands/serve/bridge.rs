@@ -13,13 +13,14 @@ use pcr_serve::owned_path::{OwnedPath, StartPose};
 use pcr_serve::robot::RobotTraits;
 use pcr_serve::server::{ServerHandle, ServerInput};
 use pcr_serve::supervisor::{StandingPlace, Supervisor};
+use pcr_serve::telemetry::Telemetry;
 use pcr_serve::vda5050::bridge::{BridgeConfig, Vda5050Bridge};
 use pcr_serve::vda5050::broker_session::{BrokerSession, SessionEnd};
 use pcr_serve::vda5050::mqtt::BrokerAddress;
 use pcr_serve::vda5050::order_path::TOLERANCE;
 use pcr_serve::vda5050::vehicle_adapter::VehicleConfig;
 use serde_json::Value;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::mpsc::sync_channel;
 use std::sync::{Arc, Mutex, PoisonError};
@@ -34,6 +35,8 @@ pub(super) struct BridgeFleetConfig {
     pub(super) broker: BrokerAddress,
     pub(super) interfaces: [TopicInterface; 2],
     pub(super) profiles: Vec<VehicleConfig>,
+    /// The file of the vehicles, which is read again on SIGHUP.
+    pub(super) file: Option<PathBuf>,
 }
 
 impl BridgeFleetConfig {
@@ -48,7 +51,7 @@ impl BridgeFleetConfig {
             log.write(LogLevel::Warn, what, &[("broker", place)]);
         }
         let interfaces = interfaces(&arguments.topics)?;
-        Ok(Some(Self { broker, interfaces, profiles: profiles(file)? }))
+        Ok(Some(Self { broker, interfaces, profiles: profiles(file)?, file: Some(file.clone()) }))
     }
 }
 
@@ -199,7 +202,7 @@ pub(super) fn start(
     fleet: BridgeFleetConfig,
     log: LogWriter,
 ) -> Result<BridgeThread, CliError> {
-    let BridgeFleetConfig { broker, interfaces: [manager, vehicles], profiles } = fleet;
+    let BridgeFleetConfig { broker, interfaces: [manager, vehicles], profiles, file } = fleet;
     known(supervisor, &profiles, log)?;
     for profile in &profiles {
         let excess =
@@ -223,6 +226,12 @@ pub(super) fn start(
     let told = readiness.clone();
     told.tell(station.unready(&bridge), station.status(&bridge));
     let (ended, handle) = (stop.clone(), handle.clone());
+    let hung_up = Arc::new(AtomicBool::new(false));
+    #[cfg(unix)]
+    if file.is_some() {
+        // Where it cannot be caught, it ends the program as it does others: the journal bears that.
+        let _ = signal_hook::flag::register(signal_hook::consts::SIGHUP, hung_up.clone());
+    }
     let (sender, events) = sync_channel(EVENTS);
     handle.send(ServerInput::Tell(sender));
     let thread = super::threads::thread("bridge", move || {
@@ -230,6 +239,9 @@ pub(super) fn start(
         // Without the bridge the vehicles are not supervised, also when its thread panics.
         let end = StopOnDrop(handle);
         while !ended.load(Ordering::Relaxed) {
+            if let Some(file) = file.as_ref().filter(|_| hung_up.swap(false, Ordering::Relaxed)) {
+                reload(&end.0, &bridge, file, log);
+            }
             match station.turn(&end.0, &bridge, &events) {
                 Ok(lines) => {
                     lines.iter().for_each(|line| log.write(LogLevel::Warn, "bridge", &[("why", line)]));
@@ -244,6 +256,32 @@ pub(super) fn start(
         Ok(())
     })?;
     Ok(BridgeThread { readiness, stop, thread })
+}
+
+/// Reads the file of vehicles again, and says in the log what has become of that.
+fn reload(handle: &ServerHandle, bridge: &Arc<Mutex<Vda5050Bridge>>, file: &Path, log: LogWriter) {
+    let own = bridge.clone();
+    let read = profiles(file).map_err(|error| match error {
+        CliError::Error(why, _) => why,
+        _ => format!("{}: not read", file.display()),
+    });
+    let taken = read.and_then(|profiles| {
+        let reload = move |supervisor: &mut Supervisor, _: &Telemetry, _: f64| {
+            own.lock().unwrap_or_else(PoisonError::into_inner).reload(supervisor, profiles)
+        };
+        handle.ask(reload).unwrap_or_else(|| Err("the supervisor has ended".into()))
+    });
+    match taken {
+        Ok([added, left_out]) => {
+            let [added, left_out] = [added, left_out].map(|names| names.join(", "));
+            let what = "the file of vehicles was read again";
+            log.write(LogLevel::Info, what, &[("added", &added), ("left_out", &left_out)]);
+        }
+        Err(why) => {
+            let what = "the file of vehicles was read again and is not taken: nothing has changed";
+            log.write(LogLevel::Error, what, &[("why", &why)]);
+        }
+    }
 }
 
 impl BridgeThread {

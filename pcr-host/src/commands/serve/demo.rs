@@ -59,7 +59,12 @@ impl BrokerDemo {
     /// What the supervisor has to know.
     pub(super) fn fleet(&self) -> BridgeFleetConfig {
         let Self { broker, interfaces, profiles, .. } = self;
-        BridgeFleetConfig { broker: broker.clone(), interfaces: interfaces.clone(), profiles: profiles.clone() }
+        BridgeFleetConfig {
+            broker: broker.clone(),
+            interfaces: interfaces.clone(),
+            profiles: profiles.clone(),
+            file: None,
+        }
     }
 
     /// What the page draws.
