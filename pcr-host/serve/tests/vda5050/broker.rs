@@ -113,9 +113,19 @@ impl Mosquitto {
 
     /// Ends it with all that it keeps, and starts another one at its place.
     pub(crate) fn restart(&mut self) {
+        self.stop();
+        std::thread::sleep(Duration::from_millis(300));
+        self.begin();
+    }
+
+    /// Ends it with all that it keeps.
+    pub(crate) fn stop(&mut self) {
         self.child.kill().unwrap();
         self.child.wait().unwrap();
-        std::thread::sleep(Duration::from_millis(300));
+    }
+
+    /// Starts another one at its place.
+    pub(crate) fn begin(&mut self) {
         self.child = Self::spawn(&self.folder);
         self.wait();
     }

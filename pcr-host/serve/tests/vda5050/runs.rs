@@ -2,14 +2,23 @@
 
 use crate::broker::Mosquitto;
 use crate::schemas;
-use crate::site::{Desk, Scene, Site, interfaces};
+use crate::site::{Desk, Scene, Site, at_broker, interfaces};
 use crate::yard::MIXED;
+use pcr_formats::vda5050::decode::MessageLimits;
 use pcr_formats::vda5050::version::ProtocolVersion;
+use pcr_serve::http::{self, HttpContent, Readiness};
 use pcr_serve::journal_entry::NullStore;
+use pcr_serve::journal_writer::WriteProgress;
+use pcr_serve::log::{LogLevel, LogWriter};
+use pcr_serve::server::{ServerInput, queue, serve};
+use pcr_serve::supervisor::Supervisor;
+use pcr_serve::vda5050::bridge::{BridgeConfig, Vda5050Bridge};
+use pcr_serve::vda5050::broker_session::BrokerSession;
 use pcr_serve::vda5050::mqtt::{BrokerAddress, LinkEvent, MqttLink};
 use pcr_serve::vehicles::lossy_channel::ChannelFaults;
 use pcr_serve::vehicles::vehicle_motion::SimulatedTraits;
-use std::sync::mpsc::channel;
+use std::sync::mpsc::{channel, sync_channel};
+use std::sync::{Arc, Mutex};
 
 pub(crate) const FAIR: Scene<'_> = Scene {
     count: 2,
@@ -72,6 +81,59 @@ fn a_fleet_of_all_editions_keeps_apart() {
             assert!(seen.contains_key(&format!("{version} {kind}")), "{seen:?}");
         }
     }
+}
+
+/// What `/readyz` answers, while the broker is there, is lost, and is back.
+#[test]
+#[ignore = "needs a broker: .ci/test.sh serve"]
+fn it_is_not_ready_while_the_broker_is_lost_and_says_why() {
+    let mut broker = Mosquitto::start("ready");
+    let [manager, vehicles] = interfaces();
+    let config = BridgeConfig { manager, vehicles: vehicles.clone(), limits: MessageLimits::default() };
+    let mut supervisor = Supervisor::new(at_broker(), Box::new(NullStore));
+    // Nobody is waited for.
+    let bridge = Vda5050Bridge::new(config, Vec::new(), &supervisor).unwrap();
+    let mut station = BrokerSession::open(&broker.address(), &vehicles, &bridge, "ready").unwrap();
+    let bridge = Arc::new(Mutex::new(bridge));
+    let (handle, inputs) = queue();
+    let server = std::thread::spawn(move || {
+        serve(&mut supervisor, &inputs, &WriteProgress::default(), LogWriter::new(LogLevel::Error))
+    });
+    let (sender, events) = sync_channel(1 << 16);
+    assert!(handle.send(ServerInput::Tell(sender)));
+    let readiness = Readiness::default();
+    let unready = Some(readiness.clone());
+    let hosts = vec!["here".to_owned()];
+    let content = HttpContent { page: String::new(), draw: None, hosts, addresses: false, unready };
+    // As the tool does, until the page says this; by turns, not by time.
+    let mut until = |status: &str, why: &str| {
+        let mut last = String::new();
+        for _ in 0..2_000 {
+            station.turn(&handle, &bridge, &events).unwrap();
+            let own = bridge.lock().unwrap();
+            readiness.tell(station.unready(&own), station.status(&own));
+            drop(own);
+            let ask = |path: &str| {
+                http::answer(&handle, &content, format!("GET {path} HTTP/1.1\r\nHost: here\r\n\r\n").as_bytes())
+            };
+            let (found, _, text) = ask("/readyz");
+            if found.starts_with(status) && text.contains(why) {
+                let is_connected = ask("/metrics").2.contains("\npcr_broker_connected 1\n");
+                assert!(ask("/healthz").0.starts_with("200"));
+                return is_connected;
+            }
+            last = format!("{found} {text}");
+        }
+        panic!("{status} {why}: {last}");
+    };
+    assert!(until("200", "it grants authority"));
+    broker.stop();
+    assert!(!until("503", "no broker: "));
+    broker.begin();
+    // At first it asks whether it is the only one.
+    assert!(until("200", "it grants authority"));
+    handle.send(ServerInput::Stop);
+    server.join().unwrap().unwrap();
 }
 
 /// What a broker says first to who comes.
