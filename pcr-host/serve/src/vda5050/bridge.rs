@@ -83,12 +83,19 @@ pub struct Vda5050Bridge {
     /// What the manager was told of them, and the lanes that have to tell it.
     notices: Vec<[String; 2]>,
     noticed: BTreeSet<usize>,
+    /// When that was last other than before \[s\].
+    noticed_at: f64,
     /// Which vehicles are away, or not, by their configuration, until the supervisor knows.
     declarations: Option<Vec<(String, bool)>>,
 }
 
 /// Time that a vehicle has to say where it stands, before that is told \[s\].
 const GRACE: f64 = 0.5;
+
+/// Number of vehicles of which the state of each vehicle tells the manager that others wait for them, and least time between two changes of that
+/// \[s\]: a fleet of 1,000 that starts does not send 1,000 states for each of its vehicles.
+const NOTICES: usize = 10;
+const PAUSE: f64 = 0.3;
 
 /// Time between two reminders of missing vehicles \[s\].
 const REMINDER: f64 = 30.0;
@@ -126,6 +133,7 @@ impl Vda5050Bridge {
             unplaced: BTreeMap::new(),
             notices: Vec::new(),
             noticed: BTreeSet::new(),
+            noticed_at: f64::NEG_INFINITY,
             declarations: Some(declarations),
             looked: f64::NEG_INFINITY,
         })
@@ -276,8 +284,10 @@ impl Vda5050Bridge {
             // Nothing is released by what was decided before.
             supervisor.decide(now);
         }
-        let notices: Vec<[String; 2]> = supervisor.unplaced().map(|it| [it.0.to_owned(), it.1.to_owned()]).collect();
-        if notices != self.notices {
+        let notices = supervisor.unplaced().take(NOTICES).map(|it| [it.0.to_owned(), it.1.to_owned()]);
+        let notices: Vec<[String; 2]> = notices.collect();
+        if notices != self.notices && now.is_finite() && now >= self.noticed_at + PAUSE {
+            self.noticed_at = now;
             for (place, lane) in self.lanes.iter_mut().enumerate() {
                 lane.notice(notices.clone());
                 self.noticed.insert(place);

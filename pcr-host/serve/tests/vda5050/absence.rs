@@ -378,3 +378,25 @@ fn what_cannot_be_changed_while_it_works_is_named_and_nothing_changes() {
     own.stands("2", [0.0, 20.0]);
     assert_eq!(own.supervisor.robot("sim/2").unwrap().abilities.radius, 0.9);
 }
+
+/// A state told of each vehicle of the fleet that it had not said where it stands.
+#[test]
+fn the_manager_is_told_of_ten_vehicles_at_most_and_not_of_each_one_at_once() {
+    let mut own = Absence::new(None, &[]);
+    let all: Vec<VehicleConfig> = (1..40).map(|k| profile(key(&k.to_string()), &CAN)).collect();
+    own.reload(&all).unwrap();
+    own.stands("1", [0.0, 0.0]);
+    own.waits(1.0);
+    assert_eq!((own.unplaced().len(), own.notices("1").len()), (38, 10));
+    let mut changes = 0;
+    for k in 2..40 {
+        let before = own.notices("1");
+        own.time += 0.01;
+        own.says(&k.to_string(), [0.0, 2.0 * f64::from(k)], false);
+        own.says(&k.to_string(), [0.0, 2.0 * f64::from(k)], false);
+        changes += u32::from(own.notices("1") != before);
+    }
+    assert!(changes <= 2, "{changes}");
+    own.waits(0.5);
+    assert!(own.unplaced().is_empty() && own.notices("1").is_empty());
+}
