@@ -59,7 +59,7 @@ Exit status:
   1  a contact, no plan for all, or a wrong table
   2  wrong arguments, or a file that cannot be read or was refused
   3  the output could not be written
-  4  undecided: the rounding of the checker is too large
+  4  undecided: rounding, or what is not on record, leaves it open
   134  a fault of pcr, which aborted; please report it
 For those of one command: pcr COMMAND --help";
 

@@ -23,6 +23,7 @@
 //! clothoid            clothoids to arcs, with a proven distance
 //! polynomial          parametric cubic curves of OpenDRIVE to Bézier curves
 //! sampled_paths       paths by their points (text)
+//! poses               records of what ran, and plans, as poses at times         PoseLog
 //! timed_paths         plans of points and times
 //! timestamp           time stamps
 //! layout              the common form: nodes, and edges of lines and arcs     Layout
@@ -62,6 +63,7 @@ mod opentcs;
 mod order_updates;
 mod path_builder;
 mod polynomial;
+mod poses;
 mod projection;
 mod rmf;
 mod route;
@@ -83,6 +85,7 @@ pub use grid::GridPlan;
 pub use json_access::parse as parse_json;
 pub use layout::{ElementId, Layout, LayoutEdge, LayoutNode};
 pub use nav2::graph_id;
+pub use poses::{BetweenPoses, PoseLog, PoseOptions, PoseTrack, TimedPose, poses};
 pub use rmf::is_navigation_graph;
 pub use route::{RouteStep, cheapest, ride, turn};
 pub use timed_paths::sectioned;
@@ -127,11 +130,13 @@ pub enum InputFormat {
     Path,
     /// Orders and states of VDA 5050 (JSON, by their content)
     Vda5050,
+    /// Records of what ran and plans, as poses with times; pcr check reads them (by their content)
+    Poses,
 }
 
 impl InputFormat {
     /// All of them.
-    pub const ALL: [Self; 9] = [
+    pub const ALL: [Self; 10] = [
         Self::Nav2,
         Self::Lif,
         Self::Rmf,
@@ -141,6 +146,7 @@ impl InputFormat {
         Self::Grid,
         Self::Path,
         Self::Vda5050,
+        Self::Poses,
     ];
 }
 
@@ -156,6 +162,7 @@ impl fmt::Display for InputFormat {
             Self::Grid => "grid",
             Self::Path => "path",
             Self::Vda5050 => "vda5050",
+            Self::Poses => "poses",
         })
     }
 }
@@ -271,6 +278,9 @@ impl InputFormat {
         if name.ends_with(".lif.json") || name.ends_with(".lif") {
             return Some(Self::Lif);
         }
+        if poses::are_in(text) {
+            return Some(Self::Poses);
+        }
         if name.ends_with(".yaml") || name.ends_with(".yml") {
             return Some(Self::Rmf);
         }
@@ -375,6 +385,7 @@ fn imported(
         InputFormat::Grid => Err(ImportError::new("a plan on a grid is not a layout")),
         InputFormat::Path => Err(ImportError::new("paths of agents are not a layout")),
         InputFormat::Vda5050 => Err(ImportError::new("an order or a state is not a layout")),
+        InputFormat::Poses => Err(ImportError::new("poses with times are not a layout; pcr check FILE reads them")),
     })?;
     // Of what was left out on request it is said.
     if layout.edges.is_empty() && !options.partial {
@@ -535,6 +546,10 @@ pub fn scenario(
             let scenario = route::scenario(&layout, &vehicle, options, warnings)?;
             report_routes(&layout, &scenario, &vehicle, warnings);
             scenario
+        }
+        InputFormat::Poses => {
+            let problem = "poses with times, between which nothing is exact; only pcr check FILE reads them";
+            return Err(ImportError::new(problem));
         }
         InputFormat::Path | InputFormat::Vda5050 => {
             let vehicle = options.vehicle(&given(options, warnings)?, true, warnings);

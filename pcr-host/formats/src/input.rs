@@ -4,7 +4,9 @@ mod lines;
 
 use crate::answer_files;
 use crate::byte_order_mark::unmarked;
-use crate::import::{self, ImportError, ImportOptions, ImportedLayout, InputFormat, InputKind, Warnings};
+use crate::import::{
+    self, ImportError, ImportOptions, ImportedLayout, InputFormat, InputKind, PoseLog, PoseOptions, Warnings,
+};
 use crate::scenario::{self, Scenario, ScenarioError};
 pub use lines::{InputScenario, ScenarioStream};
 use std::fmt;
@@ -222,6 +224,44 @@ pub fn kind(file: &Path, options: &ImportOptions) -> Result<InputKind, InputErro
 /// The same of a text that is read already.
 pub fn kind_of(file: &Path, text: &str, options: &ImportOptions) -> InputKind {
     InputKind::detect(options.from.or_else(|| InputFormat::detect(file, text)), text)
+}
+
+/// Whether a file, or standard input where the options say so, holds poses with times. A pipe is not read for that.
+pub fn holds_poses(file: &Path, options: &ImportOptions) -> bool {
+    /// Bytes that tell whether a text may hold poses at all.
+    const HEAD: u64 = 4096;
+    match options.from {
+        Some(format) => format == InputFormat::Poses,
+        None if !fs::metadata(file).is_ok_and(|there| there.is_file()) => false,
+        None => {
+            let mut head = Vec::new();
+            let read = fs::File::open(file).and_then(|opened| opened.take(HEAD).read_to_end(&mut head));
+            // Scenarios are long, and begin like this.
+            let may_be = read.is_ok() && !head.trim_ascii_start().starts_with(b"{");
+            may_be
+                && fs::read_to_string(file)
+                    .is_ok_and(|text| InputFormat::detect(file, &text) == Some(InputFormat::Poses))
+        }
+    }
+}
+
+/// Reads the poses in a text, and warnings about them.
+///
+/// # Errors
+/// [`InputError`], naming the file.
+pub fn read_poses(
+    file: &Path,
+    text: &str,
+    options: &ImportOptions,
+    pose_options: &PoseOptions,
+) -> Result<(PoseLog, Warnings), InputError> {
+    let name = named(file);
+    useful(&name, text, Some(InputFormat::Poses), options)?;
+    let mut warnings = Warnings::default();
+    match import::poses(text, options, pose_options, &mut warnings) {
+        Ok(log) => Ok((log, warnings)),
+        Err(error) => Err(InputError::Foreign(name, InputFormat::Poses, error)),
+    }
 }
 
 /// Whether all files hold orders or states of VDA 5050, or all paths by their points: an agent each, of one fleet.

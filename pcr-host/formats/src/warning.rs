@@ -109,6 +109,10 @@ codes! {
     UpdateAlone = "update-alone",
     /// A vehicle is already moving; its planned path is travelled from rest.
     MovesAlready = "moves-already",
+    /// A vehicle says for some time that it is not localized; nothing is known of it until its next pose.
+    NotLocalized = "not-localized",
+    /// The clock of a vehicle may differ from those of others, by what the message says.
+    ClockOffset = "clock-offset",
     /// The number format moves agents by more than 1 mm.
     NumberFormat = "number-format",
     /// An agent keeps its own motion, which is slower than its limits, in a plan of speeds.

@@ -9,6 +9,7 @@
 //! regions           regions as plain numbers, and their JSON            RegionsReport, RegionOptions
 //! agent_regions     regions of fleets of any size, an agent at a time   AgentRegions, BoxGrid
 //! check             the conflicts of the given motions                  CheckReport
+//! approaches        who came how near to whom, by poses at times       ApproachReport
 //! exclusion_table   which edges of a layout exclude one another         ExclusionTable
 //! memory_budget     refuses what does not fit into memory               MemoryDemand, MemoryBudget
 //! checksum          checksums of files that are read in parts
@@ -22,6 +23,7 @@
 //! ```
 
 pub mod agent_regions;
+pub mod approaches;
 pub mod bodies;
 pub mod certify;
 pub mod check;

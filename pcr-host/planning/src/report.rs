@@ -1,5 +1,6 @@
 //! Answers as text: JSON and CSV for programs, tables for people.
 
+mod approaches;
 mod certified;
 mod conflicts;
 mod delays;
@@ -12,6 +13,7 @@ mod streamed_regions;
 mod table;
 pub mod text_table;
 
+pub use approaches::approaches_table;
 pub use certified::{CERTIFIED_CSV_HEADER, certified_csv, certified_table};
 pub use conflicts::{CONFLICTS_CSV_HEADER, conflicts_csv, conflicts_table};
 pub use delays::{
@@ -29,6 +31,7 @@ pub use proofs::proof_line;
 pub use streamed_regions::{OutputError, sheet_csv, sheet_json};
 pub use table::table;
 
+use crate::approaches::ApproachReport;
 use crate::certify::{self, CertifyReport};
 use crate::check::CheckReport;
 use crate::exclusion_table::ExclusionTable;
@@ -56,6 +59,9 @@ impl VersionedReport for RegionsReport {
 impl VersionedReport for CheckReport {
     const FORMAT: &'static str = "pcr-conflicts";
     const VERSION: u32 = 2;
+}
+impl VersionedReport for ApproachReport {
+    const FORMAT: &'static str = "pcr-approaches";
 }
 impl VersionedReport for CertifyReport {
     const FORMAT: &'static str = "pcr-certificate";

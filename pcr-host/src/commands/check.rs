@@ -2,11 +2,14 @@
 
 use super::number::{ScalarArg, with_scalar};
 use super::scenario_command::{ScenarioCommand, run};
-use super::scenario_sources::without_margin;
-use super::{CONFLICTS, CliError, OutputArgs, OutputFormat};
+use super::scenario_sources::{pose_text, sources, without_margin};
+use super::{CONFLICTS, CliError, OutputArgs, OutputFormat, UNDECIDED, acknowledge, warn};
+use crate::progress::ProgressLine;
 use clap::Args;
-use pcr_formats::import::ImportOptions;
-use pcr_formats::scenario::Scenario;
+use pcr_formats::import::{ImportOptions, PoseOptions};
+use pcr_formats::input;
+use pcr_formats::scenario::{Scenario, label};
+use pcr_planning::approaches::ApproachReport;
 use pcr_planning::check::CheckReport;
 use pcr_planning::failure::ComputationError;
 use pcr_planning::fleet::HostScalar;
@@ -14,7 +17,7 @@ use pcr_planning::memory_budget::MemoryDemand;
 use pcr_planning::regions::ProgressFn;
 use pcr_planning::report::{self, OutputError};
 use std::io::{self, Write};
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
 const STATUSES: &str = "\
@@ -23,7 +26,13 @@ Exit status:
   1  conflicts; with --certify also if it is not proved that there are none
   2  wrong arguments, or one of the scenarios cannot be read or was refused;
      with --certify also if it has fewer than two agents: nothing to prove
-  3  the output could not be written";
+  3  the output could not be written
+  4  poses: no contact is proved, and some cannot be excluded
+
+Poses are records of what ran and plans of others: messages of VDA 5050 as
+mosquitto_sub prints them, YAML of libMultiRobotPlanning and db-CBS, results
+of LaCAM, CSV with a header id,t,x,y. What agents may have done between two
+poses has to be said, with --deviation or --top-speed, but for plans on grids.";
 
 const EXAMPLES: &str = "\
 Examples:
@@ -31,6 +40,7 @@ Examples:
   pcr check plan.json --closest             and how near every two agents come
   pcr check plan.json --certify             and a proof by another program
   pcr check -q plan.json && echo free       for scripts: by the exit status
+  pcr check log.txt --radius 0.4 --top-speed 1.5   a record of what ran
   pcr check - --format json < plans.jsonl   JSON Lines: a scenario on each line";
 
 /// Tell whether the agents collide, moving as the scenario says
@@ -53,6 +63,8 @@ pub(super) struct CheckArgs {
     scalar: ScalarArg,
     #[command(flatten)]
     import: ImportOptions,
+    #[command(flatten)]
+    poses: PoseOptions,
 }
 
 impl CheckArgs {
@@ -64,12 +76,75 @@ impl CheckArgs {
             return Err(CliError::arguments("--certify is for --format json and table"));
         }
         without_margin(&self.import)?;
+        let files = sources(self.files)?;
+        let is_of_poses = |file: &PathBuf| input::holds_poses(file, &self.import);
+        if files.iter().any(is_of_poses) {
+            let [file] = files.as_slice() else {
+                return Err(CliError::arguments("poses with times are checked a file at a time"));
+            };
+            return check_poses(
+                file,
+                &self.import,
+                &self.poses,
+                &self.printed,
+                [self.closest, self.certify],
+                self.scalar,
+            );
+        }
+        if let Some(option) = self.poses.given().first() {
+            let problem = format!("{option} has no effect: it is for poses with times, and the file holds none");
+            return Err(CliError::arguments(problem));
+        }
         let (form, silent) = (self.printed.form(), self.printed.is_silent());
         let closest = self.closest && !silent;
         let work = CheckCommand { form, scalar: self.scalar, closest, certify: self.certify, silent };
-        let found = run(&work, self.files, &self.import, &self.printed)?;
+        let found = run(&work, files, &self.import, &self.printed)?;
         Ok(if found { ExitCode::from(CONFLICTS) } else { ExitCode::SUCCESS })
     }
+}
+
+/// `pcr check` of poses with times.
+fn check_poses(
+    file: &Path,
+    import: &ImportOptions,
+    options: &PoseOptions,
+    printed: &OutputArgs,
+    [closest, certify]: [bool; 2],
+    scalar: ScalarArg,
+) -> Result<ExitCode, CliError> {
+    let refused = match () {
+        () if certify => "--certify is for scenarios; bounds of what poses tell are certain already",
+        () if !matches!(scalar, ScalarArg::F64) => {
+            "--scalar is for scenarios; poses are computed with bounds of the rounding of f64"
+        }
+        () if printed.form() == OutputFormat::Csv => "--format csv is for scenarios; of poses there is a table or JSON",
+        () => "",
+    };
+    if !refused.is_empty() {
+        return Err(CliError::arguments(refused));
+    }
+    let text = pose_text(file, import)?;
+    let (log, warnings) = input::read_poses(file, &text, import, options)?;
+    warn(file, &warnings);
+    let mut lines = warnings.all();
+    acknowledge(&mut lines);
+    let progress = ProgressLine::new(format!("{}: {} agents", file.display(), log.tracks.len()));
+    let name = label(&input::stem(file));
+    let told = |done, total| progress.set(done, total);
+    let report = ApproachReport::compute(&name, &log, closest && !printed.is_silent(), lines, &told)
+        .map_err(|large| CliError::wrong(file, large))?;
+    drop(progress);
+    let mut out = printed.out(false);
+    match printed.form() {
+        OutputFormat::Json => report::json(&report, &mut out)?,
+        _ => report::approaches_table(&report, &mut out)?,
+    }
+    out.flush()?;
+    Ok(match () {
+        () if report.has_contact() => ExitCode::from(CONFLICTS),
+        () if report.is_free() => ExitCode::SUCCESS,
+        () => ExitCode::from(UNDECIDED),
+    })
 }
 
 /// `pcr check`.

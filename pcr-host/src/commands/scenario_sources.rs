@@ -78,6 +78,14 @@ pub(super) fn text(file: &Path) -> Result<String, CliError> {
     Ok(input::read_text(file)?)
 }
 
+/// The text of poses with times, of which a tree is made.
+pub(super) fn pose_text(file: &Path, import: &ImportOptions) -> Result<String, CliError> {
+    keep(import);
+    let text = text(file)?;
+    ask_to_read(file, &text, import)?;
+    Ok(text)
+}
+
 /// Asks for the memory that it takes to read a file. Refuses a table of locks, which is no text.
 fn ask_for(file: &Path) -> Result<(), CliError> {
     if ExclusionIndex::is_one(file) {

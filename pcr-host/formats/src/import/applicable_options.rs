@@ -15,6 +15,8 @@ pub enum InputKind {
     Paths,
     /// Points with times, of Continuous-CBS or on a grid.
     Plan,
+    /// Records of what ran, and plans, as poses with times.
+    Poses,
 }
 
 impl InputKind {
@@ -25,6 +27,7 @@ impl InputKind {
             Some(InputFormat::Vda5050) => Self::Orders,
             Some(InputFormat::Path) => Self::Paths,
             Some(InputFormat::Grid) => Self::Plan,
+            Some(InputFormat::Poses) => Self::Poses,
             Some(InputFormat::Ccbs) if xml::root_of(text) != Some("graphml") => Self::Plan,
             Some(format) => Self::Layout(format),
         }
@@ -101,21 +104,22 @@ fn without_effect(field: &str, kind: InputKind) -> Option<&'static str> {
         ("graph", InputKind::Layout(InputFormat::Rmf)) => None,
         ("graph", _) => Some("only buildings of Open-RMF have several graphs"),
         (_, InputKind::Scenario) => Some("a scenario has its own vehicles and paths"),
-        ("routes", InputKind::Orders | InputKind::Paths | InputKind::Plan) => {
+        ("routes", InputKind::Orders | InputKind::Paths | InputKind::Plan | InputKind::Poses) => {
             Some("the file has paths of its own, and is no layout")
         }
         ("vehicle", InputKind::Layout(InputFormat::Lif)) => None,
         ("vehicle", _) => Some("only layouts in LIF tell types of vehicles apart"),
-        ("speed" | "acceleration" | "rotation" | "rotation_acceleration", InputKind::Plan) => {
+        ("speed" | "acceleration" | "rotation" | "rotation_acceleration", InputKind::Plan | InputKind::Poses) => {
             Some("a plan has its own times")
         }
-        ("corner_radius", InputKind::Orders | InputKind::Paths | InputKind::Plan) => {
+        ("corner_radius", InputKind::Orders | InputKind::Paths | InputKind::Plan | InputKind::Poses) => {
             Some("only routes on layouts have corners to round")
         }
-        ("partial", InputKind::Paths | InputKind::Plan) => Some("it is read whole or refused"),
+        ("partial", InputKind::Paths | InputKind::Plan | InputKind::Poses) => Some("it is read whole or refused"),
         (
             "tolerance",
             InputKind::Plan
+            | InputKind::Poses
             | InputKind::Layout(InputFormat::Rmf | InputFormat::OpenDrive | InputFormat::Ccbs | InputFormat::Nav2),
         ) => Some("there is no curve in the file but lines and arcs"),
         _ => None,

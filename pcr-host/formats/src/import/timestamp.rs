@@ -23,6 +23,26 @@ impl Timestamp {
         Some(Self { whole: days(date)? * 86_400 + seconds - offset(zone)?, fraction })
     }
 
+    /// A number of seconds, of which the text has all digits.
+    pub(super) fn of_seconds(text: &str, seconds: f64) -> Self {
+        let decimal = text.split_once('.').filter(|(whole, _)| !whole.is_empty() && !whole.starts_with('-'));
+        let digits = decimal.and_then(|(whole_part, fraction)| {
+            whole(fraction)?;
+            Some(Self { whole: whole(whole_part)?, fraction: format!("0.{fraction}").parse().ok()? })
+        });
+        digits.unwrap_or(Self { whole: seconds.floor() as i64, fraction: seconds - seconds.floor() })
+    }
+
+    /// A whole number of seconds.
+    pub(super) fn of_whole(whole: i64) -> Self {
+        Self { whole, fraction: 0.0 }
+    }
+
+    /// Whole seconds, rounded down.
+    pub(super) fn whole(self) -> i64 {
+        self.whole
+    }
+
     /// Seconds since another one.
     pub(super) fn since(self, other: Self) -> f64 {
         (self.whole - other.whole) as f64 + (self.fraction - other.fraction)

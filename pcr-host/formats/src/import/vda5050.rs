@@ -17,6 +17,8 @@ mod order;
 mod order_element;
 mod state;
 
+pub(super) use state::position;
+
 use super::json_access::{self, JsonObject};
 use super::trajectory::FittedTrajectory;
 use super::{

@@ -202,7 +202,7 @@ const MOST: f64 = 1e6;
 /// What is expected as the value of an option.
 #[cfg(feature = "clap")]
 #[derive(Clone, Copy, Debug, PartialEq)]
-enum OptionError {
+pub(super) enum OptionError {
     NotNegative,
     Positive,
     Index,
@@ -223,7 +223,7 @@ impl std::fmt::Display for OptionError {
 impl std::error::Error for OptionError {}
 
 #[cfg(feature = "clap")]
-fn not_negative(text: &str) -> Result<f64, OptionError> {
+pub(super) fn not_negative(text: &str) -> Result<f64, OptionError> {
     match text.parse::<f64>() {
         Ok(number) if (0.0..=MOST).contains(&number) => Ok(number),
         _ => Err(OptionError::NotNegative),
@@ -231,7 +231,7 @@ fn not_negative(text: &str) -> Result<f64, OptionError> {
 }
 
 #[cfg(feature = "clap")]
-fn positive(text: &str) -> Result<f64, OptionError> {
+pub(super) fn positive(text: &str) -> Result<f64, OptionError> {
     match not_negative(text) {
         Ok(number) if number >= 1.0 / MOST => Ok(number),
         _ => Err(OptionError::Positive),

@@ -42,6 +42,12 @@ impl Agent {
     }
 }
 
+impl FromIterator<(u64, String)> for Labels {
+    fn from_iter<I: IntoIterator<Item = (u64, String)>>(labels: I) -> Self {
+        Self(labels.into_iter().filter(|(_, label)| !label.is_empty()).collect())
+    }
+}
+
 /// A number with a label, if there is one.
 pub(super) fn display_name(id: u64, label: &str) -> String {
     if label.is_empty() { id.to_string() } else { format!("{id} {label}") }

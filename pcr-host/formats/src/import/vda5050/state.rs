@@ -281,7 +281,7 @@ impl Vda5050Reader<'_> {
 }
 
 /// Where the vehicle is, in version 3 or 2.
-fn position<'j>(state: &JsonObject<'j>) -> Result<Option<JsonObject<'j>>, ImportError> {
+pub(in crate::import) fn position<'j>(state: &JsonObject<'j>) -> Result<Option<JsonObject<'j>>, ImportError> {
     match state.object("mobileRobotPosition")? {
         None => state.object("agvPosition"),
         pose => Ok(pose),

@@ -1,0 +1,189 @@
+//! Two agents in a time in which each is on one leg: their relative motion is straight and steady, but for what they deviate.
+//!
+//! The least distance of a straight relative motion d(t) is bounded from below by a separating line: for any unit vector q,
+//! |d(t)| ≥ q · d(t), which is linear in t and so least at an end of the time. With q towards the nearest point the bound is the distance
+//! itself, and it holds whatever rounding has done to q.
+
+use super::bounded_leg::BoundedLeg;
+
+/// Distances that differ by less are not told apart \[m\].
+const TOLERANCE: f64 = 1e-9;
+
+/// How far the bounds of a least distance may be apart for a search that can bring them nearer \[m\].
+const CLOSE: f64 = 1e-6;
+
+/// Halves of halves of a time, after which it is not divided any more.
+const DEEPEST: u32 = 60;
+
+/// Relative rounding of a length.
+const FEW: f64 = 8.0 * f64::EPSILON;
+
+/// Two agents on one leg each.
+pub(super) struct LegPair<'a> {
+    legs: [&'a BoundedLeg; 2],
+    /// Rounding error of a distance \[m\].
+    rounding: f64,
+    /// Sum of the radii, from below and from above \[m\].
+    limit: [f64; 2],
+}
+
+/// Bounds of the distance in a time.
+struct DistanceBounds {
+    /// Least distance of the straight motions, from below \[m\].
+    near: f64,
+    /// Largest one, from above \[m\].
+    far: f64,
+    /// When it is least \[s\].
+    t: f64,
+    /// By how much both deviate at most and at least \[m\].
+    deviations: [f64; 2],
+}
+
+/// A time in which a contact is proved, or not known.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct OpenSpan {
+    pub(super) t: [f64; 2],
+    pub(super) is_contact: bool,
+    /// Bounds of the least distance in that time \[m\].
+    pub(super) separation: [f64; 2],
+}
+
+/// Bounds of a least distance.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct LeastDistance {
+    /// \[m\]
+    pub(super) lower: f64,
+    /// \[m\]
+    pub(super) upper: f64,
+    /// When the straight motions are nearest, how near \[s, m\], and on which map.
+    pub(super) straight: (f64, f64),
+    pub(super) map: usize,
+    /// What the lower bound can become at most \[m\].
+    attained: f64,
+}
+
+impl LeastDistance {
+    pub(super) const NONE: Self = Self {
+        lower: f64::INFINITY,
+        upper: f64::INFINITY,
+        straight: (0.0, f64::INFINITY),
+        map: 0,
+        attained: f64::INFINITY,
+    };
+
+    /// Distance beyond which nothing is of interest \[m\].
+    pub(super) fn farthest(&self) -> f64 {
+        self.attained
+    }
+}
+
+impl<'a> LegPair<'a> {
+    pub(super) fn new(legs: [&'a BoundedLeg; 2], radii: f64) -> Self {
+        // Both positions on both axes, and their difference.
+        let rounding = 2.0 * (legs[0].rounding() + legs[1].rounding());
+        Self { legs, rounding, limit: [radii * (1.0 - f64::EPSILON), radii * (1.0 + f64::EPSILON)] }
+    }
+
+    /// The time in which both are on their legs, if there is one.
+    pub(super) fn common(legs: [&BoundedLeg; 2]) -> Option<[f64; 2]> {
+        let common = [legs[0].t[0].max(legs[1].t[0]), legs[0].t[1].min(legs[1].t[1])];
+        // The ends of legs are ends of the next ones: alone they are of interest where a leg is no longer than that.
+        let is_instant = || legs.iter().any(|leg| leg.t[0] == leg.t[1]);
+        (common[0] < common[1] || (common[0] == common[1] && is_instant())).then_some(common)
+    }
+
+    fn offset(&self, t: f64) -> [f64; 2] {
+        let [a, b] = self.legs.map(|leg| leg.position_at(t));
+        [a[0] - b[0], a[1] - b[1]]
+    }
+
+    /// The distance of the straight motions at a time \[m\], from above.
+    fn distance_at(&self, t: f64) -> f64 {
+        length(self.offset(t)) * (1.0 + FEW) + self.rounding
+    }
+
+    fn deviation_at(&self, t: f64) -> f64 {
+        self.legs.iter().map(|leg| leg.deviation_at(t)).sum::<f64>() * (1.0 + FEW)
+    }
+
+    fn bounds(&self, [s, e]: [f64; 2]) -> DistanceBounds {
+        let [from, to] = [s, e].map(|t| self.offset(t));
+        let way = [to[0] - from[0], to[1] - from[1]];
+        let square = dot(way, way);
+        let part = if square > 0.0 { (-dot(from, way) / square).clamp(0.0, 1.0) } else { 0.0 };
+        let nearest = [from[0] + part * way[0], from[1] + part * way[1]];
+        let norm = length(nearest);
+        let lengths = length(from) + length(to);
+        let near = if norm > 0.0 {
+            let line = nearest.map(|value| value / norm);
+            let least = dot(line, from).min(dot(line, to));
+            (least - FEW * lengths - self.rounding).max(0.0)
+        } else {
+            0.0
+        };
+        let far = length(from).max(length(to)) * (1.0 + FEW) + self.rounding;
+        let [a, b] = self.legs.map(|leg| BoundedLeg::deviations([s, e], leg));
+        let deviations = [(a[0] + b[0]) * (1.0 + FEW), a[1] + b[1]];
+        DistanceBounds { near, far, t: (s + part * (e - s)).clamp(s, e), deviations }
+    }
+
+    /// Adds the times in which a contact is not excluded, in their order.
+    pub(super) fn open_spans(&self, time: [f64; 2], spans: &mut Vec<OpenSpan>) {
+        self.divide(time, 0, spans);
+    }
+
+    fn divide(&self, time: [f64; 2], depth: u32, spans: &mut Vec<OpenSpan>) {
+        let DistanceBounds { near, far, t, deviations: [most, least] } = self.bounds(time);
+        let lower = (near - most) * (1.0 - FEW);
+        if lower > self.limit[1] {
+            return;
+        }
+        let is_contact = (far + most) * (1.0 + FEW) < self.limit[0];
+        let tolerance = TOLERANCE + 4.0 * self.rounding;
+        let is_never_excluded = far - least <= self.limit[1] + tolerance;
+        let is_never_proved = near + least >= self.limit[0] - tolerance;
+        let middle = time[0] + 0.5 * (time[1] - time[0]);
+        let is_short = depth >= DEEPEST || middle <= time[0] || middle >= time[1];
+        if is_contact || is_short || (is_never_excluded && is_never_proved) {
+            let upper = self.distance_at(t) + self.deviation_at(t);
+            spans.push(OpenSpan { t: time, is_contact, separation: [lower.max(0.0), upper] });
+            return;
+        }
+        self.divide([time[0], middle], depth + 1, spans);
+        self.divide([middle, time[1]], depth + 1, spans);
+    }
+
+    /// Brings what is known of the least distance up to date.
+    pub(super) fn update(&self, time: [f64; 2], least: &mut LeastDistance) {
+        self.update_within(time, 0, least);
+    }
+
+    fn update_within(&self, time: [f64; 2], depth: u32, least: &mut LeastDistance) {
+        let bounds = self.bounds(time);
+        let lower = ((bounds.near - bounds.deviations[0]) * (1.0 - FEW)).max(0.0);
+        let middle = time[0] + 0.5 * (time[1] - time[0]);
+        for t in [bounds.t, middle] {
+            let (distance, deviation) = (self.distance_at(t), self.deviation_at(t));
+            least.upper = least.upper.min((distance + deviation) * (1.0 + FEW));
+            least.attained = least.attained.min((distance - deviation).max(0.0));
+            if distance < least.straight.1 {
+                (least.straight, least.map) = ((t, distance), self.legs[0].map);
+            }
+        }
+        let is_short = depth >= DEEPEST || middle <= time[0] || middle >= time[1];
+        if is_short || lower >= least.attained - CLOSE - 4.0 * self.rounding {
+            least.lower = least.lower.min(lower);
+            return;
+        }
+        self.update_within([time[0], middle], depth + 1, least);
+        self.update_within([middle, time[1]], depth + 1, least);
+    }
+}
+
+fn dot(a: [f64; 2], b: [f64; 2]) -> f64 {
+    a[0] * b[0] + a[1] * b[1]
+}
+
+fn length(a: [f64; 2]) -> f64 {
+    a[0].hypot(a[1])
+}
