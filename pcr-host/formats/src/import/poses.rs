@@ -16,6 +16,8 @@ mod pose_log;
 mod pose_options;
 mod pose_table;
 mod schedule;
+#[cfg(test)]
+mod tests;
 mod trajectories;
 
 pub use pose_log::{PoseLog, PoseTrack, TimedPose};
