@@ -7,9 +7,9 @@ use pcr_execution::lifelong::{
 use pcr_formats::import::{self, ImportOptions, ImportedLayout, InputFormat, Warnings};
 use std::f64::consts::TAU;
 
-const WAREHOUSE: &str = include_str!("../data/real/nav2/warehouse_graph.geojson");
+pub(crate) const WAREHOUSE: &str = include_str!("../data/real/nav2/warehouse_graph.geojson");
 
-fn layout(format: InputFormat, text: &str, radius: f64) -> ImportedLayout {
+pub(crate) fn layout(format: InputFormat, text: &str, radius: f64) -> ImportedLayout {
     let options = ImportOptions {
         radius: Some(radius),
         speed: Some(1.0),
@@ -182,12 +182,12 @@ fn a_fleet_in_which_nobody_can_do_anything_says_why() {
 }
 
 /// A layout of nav2 with these points, and a two-way edge between each of these pairs of them.
-fn graph(points: &[[f64; 2]], edges: &[[usize; 2]]) -> String {
+pub(crate) fn graph(points: &[[f64; 2]], edges: &[[usize; 2]]) -> String {
     one_way(points, &edges.iter().flat_map(|&[a, b]| [[a, b], [b, a]]).collect::<Vec<_>>())
 }
 
 /// A layout of nav2 with these points, and an edge from the first to the second of each of these pairs.
-fn one_way(points: &[[f64; 2]], edges: &[[usize; 2]]) -> String {
+pub(crate) fn one_way(points: &[[f64; 2]], edges: &[[usize; 2]]) -> String {
     let feature = |properties: String, kind: &str, at: String| {
         let geometry = format!(r#"{{"type":"{kind}","coordinates":{at}}}"#);
         format!(r#"{{"type":"Feature","properties":{{{properties}}},"geometry":{geometry}}}"#)

@@ -53,6 +53,7 @@ mod lateness;
 mod laws;
 mod ledger;
 mod lifelong;
+mod lifelong_active;
 mod limits;
 mod loads;
 mod loads_turns;

@@ -52,8 +52,10 @@
 //! unimpeded             what robots would do if no other robot was in their way
 //! run                   a run                                                         run, run_tasks, watched
 //! lifelong_report       the answer of `pcr traffic --hours`                           LifelongReport
+//! active_limit          how many robots of a fleet are active
 //! ```
 
+mod active_limit;
 mod endpoints;
 mod forecast;
 mod gates;
@@ -94,7 +96,7 @@ mod unblocking;
 mod unimpeded;
 
 pub use endpoints::WellFormedness;
-pub use lifelong_report::{LifelongReport, LifelongRunEntry};
+pub use lifelong_report::{LifelongReport, LifelongRunEntry, TrialRun};
 pub use motion_record::RunCertificate;
 pub use outcome::{LifelongResult, MeasuredLifelongRun, TimeShares};
 pub use own_missions::ClosureEffect;

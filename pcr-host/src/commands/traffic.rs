@@ -63,6 +63,9 @@ pub(super) struct TrafficArgs {
     /// Run the fleet for H hours with delays; prove no contact
     #[arg(long, value_name = "H", value_parser = hours)]
     hours: Option<f64>,
+    /// Robots on the layout [default: as many as do most missions]
+    #[arg(long, value_name = "N", requires = "hours", value_parser = |text: &str| whole_within::<u16>(text, 1, u16::MAX.into()))]
+    active: Option<u16>,
     /// Run it again with locks, and with start delays
     #[arg(long)]
     compare: bool,
@@ -132,13 +135,23 @@ impl TrafficArgs {
             let methods: &[CoordinationMethod] =
                 if self.compare { &CoordinationMethod::ALL } else { &[CoordinationMethod::Orders] };
             let progress = ProgressLine::new(format!("{}: simulated seconds", file.display()));
-            let all = request.duration * methods.len() as f64;
-            let told = |now: f64| progress.set(now as usize, all.ceil() as usize);
-            let answer = LifelongReport::watched(&imported, request, methods, &told);
+            let told = |now: f64, all: f64| progress.set(now as usize, all.ceil() as usize);
+            let answer = match self.active.map(usize::from) {
+                Some(active) if active > agents => {
+                    return Err(CliError::arguments(format!("--active {active}: there are only {agents} robots")));
+                }
+                Some(active) => {
+                    let all = request.duration * methods.len() as f64;
+                    let request = lifelong::LifelongOptions { agents: active, ..request };
+                    LifelongReport::watched(&imported, request, methods, &|now| told(now, all))
+                }
+                None => LifelongReport::limited(&imported, request, methods, &told),
+            };
             drop(progress);
             let mut answer = answer.map_err(|problem| CliError::wrong(file, problem))?;
             answer.asked = asked;
-            let is_complete = self.agents.is_none() || answer.runs.iter().all(|run| run.outcome.robots == asked);
+            let has_room = agents == asked && answer.runs.iter().all(|run| run.outcome.robots == answer.active);
+            let is_complete = self.agents.is_none() || has_room;
             return print(&self.printed, &answer, is_complete);
         }
         let wrong = |failure| CliError::wrong(file, failure);

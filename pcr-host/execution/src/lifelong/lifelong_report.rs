@@ -15,6 +15,10 @@ pub struct LifelongReport {
     pub seed: u64,
     /// Number of robots requested.
     pub asked: usize,
+    /// Number of robots that were active; the others were not on the layout.
+    pub active: usize,
+    /// Trial runs from which the number of active robots was chosen; empty if it was given.
+    pub trials: Vec<TrialRun>,
     /// Time for which missions come \[h\].
     pub hours: f64,
     /// Radius of the discs, without their margin \[m\].
@@ -29,6 +33,19 @@ pub struct LifelongReport {
     pub runs: Vec<LifelongRunEntry>,
     /// Warnings about input that was changed or left out when it was read.
     pub warnings: Vec<String>,
+}
+
+/// What a number of robots did in a trial run.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct TrialRun {
+    /// Number of robots.
+    pub robots: usize,
+    /// Time for which missions came \[h\].
+    pub hours: f64,
+    /// Missions per hour, after the first tenth of the time.
+    pub missions_per_hour: f64,
+    /// Whether it came to a standstill.
+    pub standstill: bool,
 }
 
 /// A run, with its computing times.
@@ -83,6 +100,8 @@ impl LifelongReport {
             layout: imported.layout.name.clone(),
             seed: request.seed,
             asked: request.agents,
+            active: request.agents,
+            trials: Vec::new(),
             hours: request.duration / 3600.0,
             radius: imported.vehicle.radius,
             delays: request.delays,
@@ -96,10 +115,7 @@ impl LifelongReport {
     /// Whether every run is certified free of contact, no robot went beyond its hold, no robot waits for ever, and some goal
     /// was reached.
     pub fn is_sound(&self) -> bool {
-        self.runs.iter().all(|run| {
-            let LifelongResult { certificate, authority_overruns: breaches, stuck, idle_because, .. } = &run.outcome;
-            certificate.verdict == "proved" && *breaches == 0 && *stuck == 0 && idle_because.is_none()
-        })
+        self.runs.iter().all(|run| run.outcome.is_safe() && run.outcome.idle_because.is_none())
     }
 }
 

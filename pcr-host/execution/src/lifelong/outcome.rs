@@ -35,6 +35,8 @@ pub struct LifelongResult {
     pub moved: usize,
     /// Number of ways and orders that were replaced by better ones.
     pub revised: usize,
+    /// The most often that a mission was overtaken while it waited: newer missions that were admitted before it.
+    pub overtaken: usize,
     /// Longest time between a mission and its admission \[s\].
     pub longest_wait: f64,
     /// Longest time that a mission has waited at the end of the run \[s\].
@@ -46,6 +48,13 @@ pub struct LifelongResult {
     pub idle_because: Option<String>,
     /// Shares of the time of the robots while missions came.
     pub time: TimeShares,
+}
+
+impl LifelongResult {
+    /// Whether the run is certified free of contact, no robot went beyond its hold, and every robot came to its end.
+    pub fn is_safe(&self) -> bool {
+        self.certificate.verdict == "proved" && self.authority_overruns == 0 && self.stuck == 0
+    }
 }
 
 /// Shares of the time of all robots; their sum is 1.

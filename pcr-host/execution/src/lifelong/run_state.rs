@@ -155,6 +155,7 @@ impl LifelongState {
             refused: 0,
             moved: 0,
             revised: 0,
+            overtaken: 0,
             longest_wait: 0.0,
             waiting: 0.0,
             starved: 0,

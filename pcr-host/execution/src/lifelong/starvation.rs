@@ -128,6 +128,7 @@ impl LifelongState {
     pub(super) fn pass(&mut self, rank: f64) {
         for other in self.missions.iter_mut().flatten() {
             other.passed += usize::from(!other.admitted && other.rank < rank);
+            self.outcome.overtaken = self.outcome.overtaken.max(other.passed);
         }
     }
 

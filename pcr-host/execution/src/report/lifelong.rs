@@ -8,7 +8,7 @@ use std::io::{self, Write};
 
 /// The header line of [`lifelong_csv`].
 pub const LIFELONG_CSV_HEADER: &str = "method,robots,missions,missions_per_hour,travel_over_unimpeded,certificate,breaches,\
-stuck,standstill,refused,moved,revised,longest_wait,waiting,starved,driving,turning,stopped,held,aside,idle,decisions,decision_median,decision_p99,idle_because\n";
+stuck,standstill,refused,moved,revised,overtaken,longest_wait,waiting,starved,driving,turning,stopped,held,aside,idle,decisions,decision_median,decision_p99,idle_because\n";
 
 /// One line for each method; if no goal was reached, a reason takes the place of the ratio.
 ///
@@ -22,7 +22,7 @@ pub fn lifelong_csv(lifelong: &LifelongReport, out: &mut dyn Write) -> io::Resul
         let because = it.idle_because.as_ref().map_or_else(String::new, |why| format!("\"{why}\""));
         writeln!(
             out,
-            "{},{},{},{},{ratio},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{decisions},{decision_median},{decision_p99},{because}",
+            "{},{},{},{},{ratio},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{decisions},{decision_median},{decision_p99},{because}",
             it.method.key(),
             it.robots,
             it.missions,
@@ -34,6 +34,7 @@ pub fn lifelong_csv(lifelong: &LifelongReport, out: &mut dyn Write) -> io::Resul
             it.refused,
             it.moved,
             it.revised,
+            it.overtaken,
             it.longest_wait,
             it.waiting,
             it.starved,
@@ -53,7 +54,7 @@ pub fn lifelong_csv(lifelong: &LifelongReport, out: &mut dyn Write) -> io::Resul
 /// # Errors
 /// Errors of the writer.
 pub fn lifelong_table(lifelong: &LifelongReport, out: &mut dyn Write) -> io::Result<()> {
-    let LifelongReport { layout, seed, asked, hours, delays, well_formedness, alone, runs, .. } = lifelong;
+    let LifelongReport { layout, seed, asked, active, hours, delays, well_formedness, alone, runs, .. } = lifelong;
     let name = if layout.is_empty() { "layout" } else { layout };
     writeln!(out, "{}: {} for {hours} h, seed {seed}", heading(name), counted(*asked, "robot"))?;
     writeln!(
@@ -64,16 +65,17 @@ pub fn lifelong_table(lifelong: &LifelongReport, out: &mut dyn Write) -> io::Res
         100.0 * delays.slip
     )?;
     well_formed(well_formedness, out)?;
+    active_robots(lifelong, out)?;
     let safe = well_formedness.safe_ends.len();
-    if *asked >= safe {
+    if *active >= safe {
         let why = match well_formedness.dead_ends_only {
             true => "whether missions may wait for ever is not known: only dead ends were looked at",
             false => "no safe end is left free: somebody may always stand in the way, and missions wait for ever",
         };
         writeln!(out, "{why}")?;
     }
-    if let Some(run) = runs.iter().find(|run| run.outcome.robots < *asked) {
-        writeln!(out, "{} without a place to start", asked - run.outcome.robots)?;
+    if let Some(run) = runs.iter().find(|run| run.outcome.robots < *active) {
+        writeln!(out, "{} without a place to start", active - run.outcome.robots)?;
     }
     writeln!(out, "{alone:.0} missions an hour if nobody was in anybody's way")?;
     let mut columns = TextTable::new(&[
@@ -135,6 +137,33 @@ pub fn lifelong_table(lifelong: &LifelongReport, out: &mut dyn Write) -> io::Res
         )?;
     }
     Ok(())
+}
+
+/// How many robots are active, and why not all of them.
+fn active_robots(lifelong: &LifelongReport, out: &mut dyn Write) -> io::Result<()> {
+    let LifelongReport { asked, active, trials, .. } = lifelong;
+    let chosen = trials.iter().find(|trial| trial.robots == *active);
+    let most = chosen.map_or(0.0, |trial| trial.missions_per_hour);
+    let why = match trials.len() {
+        0 if active < asked => "",
+        0 | 1 => return Ok(()),
+        _ if trials.iter().any(|trial| trial.robots > *active && trial.standstill) => {
+            "; more would do less or come to a standstill"
+        }
+        _ if active < asked => "; more would do less",
+        _ if trials.iter().any(|trial| trial.robots < *active && trial.missions_per_hour > most) => {
+            "; fewer would do hardly more"
+        }
+        _ => "; fewer would do no more",
+    };
+    let away = if active < asked { ", the others are not on the layout" } else { "" };
+    write!(out, "{active} of {asked} active{away}{why}")?;
+    if !trials.is_empty() {
+        let tried =
+            trials.iter().map(|it| format!("{} robots {:.0} in {} h", it.robots, it.missions_per_hour, it.hours));
+        write!(out, " (missions an hour: {})", tried.collect::<Vec<_>>().join(", "))?;
+    }
+    writeln!(out)
 }
 
 fn well_formed(it: &WellFormedness, out: &mut dyn Write) -> io::Result<()> {
