@@ -27,12 +27,7 @@ Exit status:
   2  wrong arguments, or one of the scenarios cannot be read or was refused;
      with --certify also if it has fewer than two agents: nothing to prove
   3  the output could not be written
-  4  poses: no contact is proved, and some cannot be excluded
-
-Poses are records of what ran and plans of others: messages of VDA 5050 as
-mosquitto_sub prints them, YAML of libMultiRobotPlanning and db-CBS, results
-of LaCAM, CSV with a header id,t,x,y. What agents may have done between two
-poses has to be said, with --deviation or --top-speed, but for plans on grids.";
+  4  poses with times: no contact is proved, and some cannot be excluded";
 
 const EXAMPLES: &str = "\
 Examples:
@@ -40,7 +35,7 @@ Examples:
   pcr check plan.json --closest             and how near every two agents come
   pcr check plan.json --certify             and a proof by another program
   pcr check -q plan.json && echo free       for scripts: by the exit status
-  pcr check log.txt --radius 0.4 --top-speed 1.5   a record of what ran
+  pcr check run.log --radius 0.4 --top-speed 2   a record of what ran
   pcr check - --format json < plans.jsonl   JSON Lines: a scenario on each line";
 
 /// Tell whether the agents collide, moving as the scenario says

@@ -8,19 +8,19 @@ use super::super::vehicle::{not_negative, positive};
 #[derive(Clone, Debug, Default)]
 #[cfg_attr(feature = "clap", derive(clap::Args), command(next_help_heading = super::super::HEADING))]
 pub struct PoseOptions {
-    /// Between two poses straight and steady, to within this (poses)
+    /// Straight between poses to within (poses)
     #[cfg_attr(feature = "clap", arg(long, value_name = "M", value_parser = not_negative))]
     pub deviation: Option<f64>,
-    /// Between two poses any way at up to this speed (poses)
+    /// Any way between poses, no faster (poses)
     #[cfg_attr(feature = "clap", arg(long, value_name = "M/S", value_parser = positive))]
     pub top_speed: Option<f64>,
-    /// Nothing is known between poses further apart (poses)
+    /// Longest time between joined poses (poses)
     #[cfg_attr(feature = "clap", arg(long, value_name = "S", value_parser = positive))]
     pub gap: Option<f64>,
     /// Time between two states (results of db-CBS)
     #[cfg_attr(feature = "clap", arg(long, value_name = "S", value_parser = positive))]
     pub step: Option<f64>,
-    /// Number agents and maps instead of naming them (poses)
+    /// Numbers in place of names (poses)
     #[cfg_attr(feature = "clap", arg(long))]
     pub anonymous: bool,
 }
