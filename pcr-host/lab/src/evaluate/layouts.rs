@@ -47,7 +47,7 @@ pub(super) fn section(fleets: &PaperFleets, extent: Thoroughness) -> Result<Docu
     };
     let mut text = format!(
         "## Fleets on other layouts\n\nThe same for {hours} h on all layouts of others in `tests/data/real`, 1 m/s, 0.5 m/s², the largest level of a building, with {} robots where so many find a \
-        place to start (`pcr traffic LAYOUT --hours {hours} --radius RADIUS --agents N --compare --seed SEED`). *Orders*, *locks*, *start delays*: missions an hour, without the first tenth of the time and what is finished after its end, the mean of seeds 1 to {runs}. *Safe*: safe ends; with fewer robots no mission is refused for ever. *Alone*: the same if nobody was \
+        place to start (`pcr traffic LAYOUT --hours {hours} --radius RADIUS --agents N --active N --compare --seed SEED`). *Orders*, *locks*, *start delays*: missions an hour, without the first tenth of the time and what is finished after its end, the mean of seeds 1 to {runs}. *Safe*: safe ends; with fewer robots no mission is refused for ever. *Alone*: the same if nobody was \
         in anybody's way; where *orders / alone* is 1, no method can do more. *Locks*: the better one of locks on whole routes and on edges. *Decision*: by orders, 99 of 100 within, the longest of the seeds.\n\n\
         | layout | radius | safe | robots | alone | orders | locks | start delays | orders / locks | orders / alone | stuck | decision | contact |\n\
         |---|---:|---:|---:|---:|---:|---:|---:|---:|---:|---:|---:|---|\n",

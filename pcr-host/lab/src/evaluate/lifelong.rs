@@ -21,7 +21,7 @@ pub(super) fn section(fleets: &PaperFleets, extent: Thoroughness) -> Result<Docu
     let usual = DelayModel::default();
     let mut text = format!(
         "## Fleets that run\n\nThe same route graph, discs of {RADIUS} m, turns in place at corners; a robot that has finished a mission gets a new \
-        random one, for {hours} h (`pcr traffic --hours {hours} --compare`, seed 1). Robots are stopped for {} % of the time, {} s each, and are up \
+        random one, for {hours} h (`pcr traffic --hours {hours} --active N --compare`, seed 1). Robots are stopped for {} % of the time, {} s each, and are up \
         to {} % slower than commanded. Missions are drawn once and never exchanged; all methods have the same missions and the same delays. Only \
         with orders, a robot looks for the way to its next goal up to 25 s before it reaches a goal, 10 s with more robots than safe \
         ends or more than 64 robots. Locks on edges are granted one by one, if all could still finish \
