@@ -155,28 +155,67 @@ impl<'a> LegPair<'a> {
 
     /// Brings what is known of the least distance up to date.
     pub(super) fn update(&self, time: [f64; 2], least: &mut LeastDistance) {
-        self.update_within(time, 0, least);
+        let bounds = self.bounds(time);
+        self.sample(bounds.t, least);
+        let lower = ((bounds.near - bounds.deviations[0]) * (1.0 - FEW)).max(0.0);
+        let is_enough = |least: &LeastDistance| lower >= least.attained - CLOSE - 4.0 * self.rounding;
+        let lower = if is_enough(least) { lower } else { lower.max(self.least_gap(time, least)) };
+        least.lower = least.lower.min(lower);
     }
 
-    fn update_within(&self, time: [f64; 2], depth: u32, least: &mut LeastDistance) {
-        let bounds = self.bounds(time);
-        let lower = ((bounds.near - bounds.deviations[0]) * (1.0 - FEW)).max(0.0);
-        let middle = time[0] + 0.5 * (time[1] - time[0]);
-        for t in [bounds.t, middle] {
-            let (distance, deviation) = (self.distance_at(t), self.deviation_at(t));
-            least.upper = least.upper.min((distance + deviation) * (1.0 + FEW));
-            least.attained = least.attained.min((distance - deviation).max(0.0));
-            if distance < least.straight.1 {
-                (least.straight, least.map) = ((t, distance), self.legs[0].map);
+    /// Takes into account what is known at a time.
+    fn sample(&self, t: f64, least: &mut LeastDistance) {
+        let (distance, [lower, _]) = (self.distance_at(t), self.gap_at(t));
+        least.upper = least.upper.min((distance + self.deviation_at(t)) * (1.0 + FEW));
+        least.attained = least.attained.min(lower.max(0.0));
+        if distance < least.straight.1 {
+            (least.straight, least.map) = ((t, distance), self.legs[0].map);
+        }
+    }
+
+    /// Bounds of the distance of the straight motions less what both deviate, at a time \[m\].
+    fn gap_at(&self, t: f64) -> [f64; 2] {
+        let (distance, deviation) = (length(self.offset(t)), self.deviation_at(t));
+        let rounding = self.rounding + FEW * (distance + 4.0 * deviation);
+        [distance - deviation - rounding, distance - deviation + rounding]
+    }
+
+    /// The least of that in a time, from below \[m\].
+    ///
+    /// The distance of straight motions is convex, and deviations are concave, so their difference is convex. A line through two of its
+    /// points is below it everywhere outside of them: with three points around the least one, four such lines are below all of it.
+    fn least_gap(&self, [s, e]: [f64; 2], least: &mut LeastDistance) -> f64 {
+        /// Part of the time between the three points, and of a section in the search for the middle one.
+        const STEP: f64 = 1e-5;
+        const GOLDEN: f64 = 0.618;
+        let step = STEP * (e - s);
+        let (mut from, mut to) = (s, e);
+        while to - from > step {
+            let [a, b] = [to - GOLDEN * (to - from), from + GOLDEN * (to - from)];
+            if a <= from || b >= to {
+                break;
             }
+            if self.gap_at(a)[0] < self.gap_at(b)[0] { to = b } else { from = a }
         }
-        let is_short = depth >= DEEPEST || middle <= time[0] || middle >= time[1];
-        if is_short || lower >= least.attained - CLOSE - 4.0 * self.rounding {
-            least.lower = least.lower.min(lower);
-            return;
+        let middle = (0.5 * (from + to)).clamp(s + step, e - step);
+        let [before, after] = [(middle - step).max(s), (middle + step).min(e)];
+        self.sample(middle, least);
+        if !(before < middle && middle < after) {
+            return f64::NEG_INFINITY;
         }
-        self.update_within([time[0], middle], depth + 1, least);
-        self.update_within([middle, time[1]], depth + 1, least);
+        // Below what is beyond `near`, seen from `far`, up to `end`.
+        let beyond = |near: f64, far: f64, end: f64| {
+            let ([lower, _], [_, upper]) = (self.gap_at(near), self.gap_at(far));
+            let slope = (lower - upper) / (near - far).abs();
+            lower.min(lower + slope * (end - near).abs() * (1.0 + if slope < 0.0 { FEW } else { -FEW }))
+        };
+        let lines = [
+            beyond(before, middle, s),
+            beyond(middle, after, before),
+            beyond(middle, before, after),
+            beyond(after, middle, e),
+        ];
+        lines.into_iter().fold(f64::INFINITY, f64::min)
     }
 }
 

@@ -105,6 +105,21 @@ fn straight_motions_have_the_conflicts_of_the_kernel() {
     assert!(conflicts > 20, "{conflicts}");
 }
 
+/// The least distance of discs of 0.3 m that leave and reach their ends within 1 s, by sampling; that of the centres is at least 0.
+fn least_gap(ways: &[[[f64; 2]; 2]; 2], top: f64) -> f64 {
+    let sample = |k: u32| {
+        let t = f64::from(k) / 10_000.0;
+        let at = |way: &[[f64; 2]; 2]| [0, 1].map(|axis| way[0][axis] + t * (way[1][axis] - way[0][axis]));
+        let off = |way: &[[f64; 2]; 2]| {
+            let speed = distance(way[0], way[1]);
+            let ellipse = ((top * top - speed * speed) * t * (1.0 - t)).sqrt();
+            ellipse.min((top + speed) * t.min(1.0 - t))
+        };
+        distance(at(&ways[0]), at(&ways[1])) - off(&ways[0]) - off(&ways[1])
+    };
+    (0..=10_000).map(sample).fold(f64::INFINITY, f64::min).max(0.0) - 0.6
+}
+
 /// Whatever two agents did at up to the top speed is within the bounds.
 #[test]
 fn ways_within_the_top_speed_are_within_the_bounds() {
@@ -120,10 +135,12 @@ fn ways_within_the_top_speed_are_within_the_bounds() {
             }
         };
         let ((seen, true_way), (other_seen, other_way)) = (way(1), way(2));
+        let ways = [&seen, &other_seen].map(|track| [track.poses[0].point, track.poses[1].point]);
         let truth = report(vec![true_way, other_way], BetweenPoses::Straight(0.0));
         let bounds = report(vec![seen, other_seen], BetweenPoses::TopSpeed(top));
         let [truly, bound] = [&truth, &bounds].map(|report| report.closest.as_ref().unwrap()[0].clearance);
         assert!(bound[0] <= truly[1] && truly[0] <= bound[1], "{bound:?} {truly:?}");
+        assert!((bound[0] - least_gap(&ways, top)).abs() < 1e-4, "{bound:?}");
         for contact in truth.approaches.iter().flat_map(|it| &it.contacts) {
             let is_covered = |it: &ApproachEntry| it.t[0] <= contact[0] && contact[1] <= it.t[1];
             assert!(bounds.approaches.iter().any(is_covered), "{contact:?}");
