@@ -20,26 +20,29 @@ impl PairWalk {
     pub(super) fn new(agents: [&LegBlocks; 2], closest: bool) -> Self {
         let radii = agents[0].radius + agents[1].radius;
         let mut walk = Self { is_met: false, radii, spans: Vec::new(), least: closest.then_some(LeastDistance::NONE) };
-        let mut place = 0;
+        let (mut place, mut pairs) = (0, Vec::new());
         for block in &agents[0].blocks {
             let others = &agents[1].blocks;
             while others.get(place).is_some_and(|other| other.t[1] < block.t[0]) {
                 place += 1;
             }
             let common = others.get(place..).unwrap_or_default().iter().take_while(|other| other.t[0] <= block.t[1]);
-            for other in common.filter(|other| other.map == block.map) {
-                walk.compare(agents, [block, other]);
-            }
+            let common = common.filter(|other| other.map == block.map);
+            pairs.extend(common.map(|other| (block.distance(other), [block, other])));
+        }
+        // What is nearest first: most of the others are farther than that then.
+        pairs.sort_by(|(a, _), (b, _)| a.total_cmp(b));
+        for (distance, blocks) in pairs {
+            walk.compare(agents, blocks, distance);
         }
         // Blocks that follow one another share an end, at which an instant may be there twice.
         walk.spans.sort_by(|(a, _), (b, _)| a.t[0].total_cmp(&b.t[0]).then(a.t[1].total_cmp(&b.t[1])));
         walk
     }
 
-    fn compare(&mut self, agents: [&LegBlocks; 2], blocks: [&LegBlock; 2]) {
+    fn compare(&mut self, agents: [&LegBlocks; 2], blocks: [&LegBlock; 2], distance: f64) {
         let [first, second] = [0, 1].map(|k| agents[k].legs.get(blocks[k].legs.clone()).unwrap_or_default());
         let is_apart = blocks[0].t[0].max(blocks[1].t[0]) >= blocks[0].t[1].min(blocks[1].t[1]);
-        let distance = blocks[0].distance(blocks[1]);
         let is_far = |least: &Option<LeastDistance>, radii: f64| {
             distance > radii * (1.0 + f64::EPSILON) && least.as_ref().is_none_or(|least| distance > least.farthest())
         };
