@@ -51,7 +51,7 @@ pub(crate) const RULES: [ArgumentRule; 34] = [
         "traffic",
         &["missions"],
         Excludes,
-        &["agents", "hours", "seed", "compare", "stopped", "slip"],
+        &["agents", "active", "hours", "seed", "compare", "stopped", "slip"],
         "vehicles and missions are those of the file, which run once and without random delays",
     ),
     (
@@ -63,7 +63,7 @@ pub(crate) const RULES: [ArgumentRule; 34] = [
     ),
     (
         "traffic",
-        &["compare", "stopped", "slip"],
+        &["active", "compare", "stopped", "slip"],
         Needs,
         &["hours"],
         "without --hours each robot has one mission, which is planned and not run; add --hours H",

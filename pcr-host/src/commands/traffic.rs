@@ -64,7 +64,7 @@ pub(super) struct TrafficArgs {
     #[arg(long, value_name = "H", value_parser = hours)]
     hours: Option<f64>,
     /// Robots on the layout [default: as many as do most missions]
-    #[arg(long, value_name = "N", requires = "hours", hide_short_help = true, value_parser = |text: &str| whole_within::<u16>(text, 1, u16::MAX.into()))]
+    #[arg(long, value_name = "N", hide_short_help = true, value_parser = |text: &str| whole_within::<u16>(text, 1, u16::MAX.into()))]
     active: Option<u16>,
     /// Run it again with locks, and with start delays
     #[arg(long)]
