@@ -200,7 +200,8 @@ where
         self.undecide()
     }
 
-    /// Counts the regions and pieces that the table of a fleet takes, like [`Ecm::needed`]. One order is needed for each region.
+    /// Counts the regions and pieces that the table of a fleet takes, like [`Ecm::needed`]. One order is needed for each region. The table is
+    /// then empty, and no order is decided.
     ///
     /// # Errors
     /// As [`Ecm::needed`].

@@ -48,7 +48,7 @@ enum LayoutDifference {
     StrangeNode(ElementId),
 }
 
-/// What is wrong with an edge.
+/// Why an edge of the file that was written is not that of the layout.
 #[derive(Clone, Debug, PartialEq)]
 enum EdgeDifference {
     /// It is missing, or not what it was.

@@ -300,7 +300,7 @@ fn both(a: &[[f64; 2]], b: &[[f64; 2]]) -> Vec<[f64; 2]> {
     pairs.filter(|[from, to]| from <= to).collect()
 }
 
-/// What is wrong with a field of a zone set.
+/// Why a field of a zone set cannot be read.
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum ZoneFieldError {
     /// It is missing.

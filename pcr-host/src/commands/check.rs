@@ -71,20 +71,13 @@ impl CheckArgs {
             return Err(CliError::arguments("--certify is for --format json and table"));
         }
         without_margin(&self.import)?;
-        let files = sources(self.files)?;
+        let files = sources(self.files.clone())?;
         let is_of_poses = |file: &PathBuf| input::holds_poses(file, &self.import);
         if files.iter().any(is_of_poses) {
             let [file] = files.as_slice() else {
                 return Err(CliError::arguments("poses with times are checked a file at a time"));
             };
-            return check_poses(
-                file,
-                &self.import,
-                &self.poses,
-                &self.printed,
-                [self.closest, self.certify],
-                self.scalar,
-            );
+            return self.check_poses(file);
         }
         if let Some(option) = self.poses.given().first() {
             let problem = format!("{option} has no effect: it is for poses with times, and the file holds none");
@@ -96,50 +89,44 @@ impl CheckArgs {
         let found = run(&work, files, &self.import, &self.printed)?;
         Ok(if found { ExitCode::from(CONFLICTS) } else { ExitCode::SUCCESS })
     }
-}
 
-/// `pcr check` of poses with times.
-fn check_poses(
-    file: &Path,
-    import: &ImportOptions,
-    options: &PoseOptions,
-    printed: &OutputArgs,
-    [closest, certify]: [bool; 2],
-    scalar: ScalarArg,
-) -> Result<ExitCode, CliError> {
-    let refused = match () {
-        () if certify => "--certify is for scenarios; bounds of what poses tell are certain already",
-        () if !matches!(scalar, ScalarArg::F64) => {
-            "--scalar is for scenarios; poses are computed with bounds of the rounding of f64"
+    /// Checks poses with times.
+    fn check_poses(&self, file: &Path) -> Result<ExitCode, CliError> {
+        let Self { import, poses: options, printed, .. } = self;
+        let refusals = [
+            (self.certify, "--certify is for scenarios; bounds of what poses tell are certain already"),
+            (
+                !matches!(self.scalar, ScalarArg::F64),
+                "--scalar is for scenarios; poses are computed with bounds of the rounding of f64",
+            ),
+            (printed.form() == OutputFormat::Csv, "--format csv is for scenarios; of poses there is a table or JSON"),
+        ];
+        if let Some((_, why)) = refusals.iter().find(|(is_given, _)| *is_given) {
+            return Err(CliError::arguments(*why));
         }
-        () if printed.form() == OutputFormat::Csv => "--format csv is for scenarios; of poses there is a table or JSON",
-        () => "",
-    };
-    if !refused.is_empty() {
-        return Err(CliError::arguments(refused));
+        let text = pose_text(file, import)?;
+        let (log, warnings) = input::read_poses(file, &text, import, options)?;
+        warn(file, &warnings);
+        let mut lines = warnings.all();
+        acknowledge(&mut lines);
+        let progress = ProgressLine::new(format!("{}: {} agents", file.display(), log.tracks.len()));
+        let name = label(&input::stem(file));
+        let told = |done, total| progress.set(done, total);
+        let report = ApproachReport::compute(&name, &log, self.closest && !printed.is_silent(), lines, &told)
+            .map_err(|large| CliError::wrong(file, large))?;
+        drop(progress);
+        let mut out = printed.out(false);
+        match printed.form() {
+            OutputFormat::Json => report::json(&report, &mut out)?,
+            _ => report::approaches_table(&report, &mut out)?,
+        }
+        out.flush()?;
+        Ok(match () {
+            () if report.has_contact() => ExitCode::from(CONFLICTS),
+            () if report.is_free() => ExitCode::SUCCESS,
+            () => ExitCode::from(UNDECIDED),
+        })
     }
-    let text = pose_text(file, import)?;
-    let (log, warnings) = input::read_poses(file, &text, import, options)?;
-    warn(file, &warnings);
-    let mut lines = warnings.all();
-    acknowledge(&mut lines);
-    let progress = ProgressLine::new(format!("{}: {} agents", file.display(), log.tracks.len()));
-    let name = label(&input::stem(file));
-    let told = |done, total| progress.set(done, total);
-    let report = ApproachReport::compute(&name, &log, closest && !printed.is_silent(), lines, &told)
-        .map_err(|large| CliError::wrong(file, large))?;
-    drop(progress);
-    let mut out = printed.out(false);
-    match printed.form() {
-        OutputFormat::Json => report::json(&report, &mut out)?,
-        _ => report::approaches_table(&report, &mut out)?,
-    }
-    out.flush()?;
-    Ok(match () {
-        () if report.has_contact() => ExitCode::from(CONFLICTS),
-        () if report.is_free() => ExitCode::SUCCESS,
-        () => ExitCode::from(UNDECIDED),
-    })
 }
 
 /// `pcr check`.

@@ -102,7 +102,7 @@ impl Trial {
         self.answer.alone / self.robots().max(1) as f64
     }
 
-    /// Whether it is proved that nobody touched, and everybody came to its end.
+    /// Returns whether nobody touched, as proved, and all robots came to their ends.
     fn is_safe(&self) -> bool {
         self.outcome().is_some_and(LifelongResult::is_safe)
     }

@@ -121,9 +121,7 @@ pub(super) fn read(
         ) {
             Ok(mut edge) => {
                 // In the other direction a vehicle drives backward: it does not turn round.
-                if outline.is_some() {
-                    edge.facing[1] = Facing::Backward;
-                }
+                edge.facing[1] = Facing::Backward;
                 edges.add(edge, warnings);
             }
             Err(error) => warnings.lose(error),

@@ -199,7 +199,7 @@ pub struct ImportOptions {
 /// Largest value of an option: beyond it nothing is a vehicle.
 const MOST: f64 = 1e6;
 
-/// What is expected as the value of an option.
+/// A value of an option that is out of range, by the range that is expected.
 #[cfg(feature = "clap")]
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum OptionError {

@@ -11,11 +11,11 @@ pub struct TopicError {
     pub field: &'static str,
     /// The text.
     pub text: String,
-    /// What is wrong with it, or with one of its levels.
+    /// Why it is refused.
     pub fault: LevelFault,
 }
 
-/// What is wrong with a level of a topic.
+/// Why a level of a topic is refused.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum LevelFault {
     /// It is empty.

@@ -4,7 +4,7 @@ use pcr_certify::error::CertifyError;
 use serde_json::Value;
 use std::fmt;
 
-/// What is wrong with a file that has a table: an answer of `pcr regions --certificate`, or what a microcontroller prints.
+/// Why a file with a table cannot be proved: an answer of `pcr regions --certificate`, or what a microcontroller prints.
 #[derive(Debug)]
 pub enum CertifyInputError {
     /// The table of a microcontroller.

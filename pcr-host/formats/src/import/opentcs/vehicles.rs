@@ -67,7 +67,7 @@ fn named(vehicle: roxmltree::Node<'_, '_>) -> String {
     format!("vehicle {}", vehicle.attribute("name").unwrap_or_default())
 }
 
-/// What is wrong with the box of a vehicle.
+/// A length or width of the box of a vehicle that is missing or no size.
 struct BoxError {
     vehicle: String,
     field: &'static str,

@@ -50,7 +50,7 @@ pub(super) fn is_line(line: &str) -> bool {
     LogLine::read(line).is_some_and(|line| TopicKind::of_topic(line.topic).is_some())
 }
 
-/// What is known of a vehicle beside its poses.
+/// Times of the last messages of a vehicle, and whether it was localized.
 #[derive(Default)]
 struct VehicleClock {
     /// Time stamps of its last state and its last visualization, and their lines.

@@ -57,7 +57,7 @@ impl PoseOptions {
         }
     }
 
-    /// What is known between two poses, if an option says it.
+    /// Returns the bound on where agents are between two poses, if an option gives one.
     pub(super) fn between(&self) -> Option<BetweenPoses> {
         self.deviation.map(BetweenPoses::Straight).or(self.top_speed.map(BetweenPoses::TopSpeed))
     }
