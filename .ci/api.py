@@ -74,8 +74,8 @@ def items(folder):
         kind, name = pathlib.Path(link).name.removesuffix(".html").split(".")
         path = "::".join([*pathlib.Path(link).parent.parts, name])
         page = (folder / link).read_text()
-        # What is implemented for foreign traits is theirs.
-        own = re.split(r'<h2 id="(?:trait-implementations|synthetic-implementations|blanket-implementations|implementors|foreign-impls)"', page)[0]
+        # What is implemented for foreign traits is theirs, and so are the methods of what a type dereferences to.
+        own = re.split(r'<h2 id="(?:deref-methods-[^"]*|trait-implementations|synthetic-implementations|blanket-implementations|implementors|foreign-impls)"', page)[0]
         parts = re.findall(r'id="(?:method|tymethod|variant|structfield|associatedconstant|associatedtype)\.(\w+)"', own)
         declaration = re.search(r'<pre class="rust item-decl">(.*?)</pre>', page, re.S)[1]
         marks = [mark for mark in ("non_exhaustive", "must_use") if f"#[{mark}" in text(declaration)]

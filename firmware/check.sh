@@ -86,6 +86,17 @@ table() {
   link certify <"$scratch/target" || fail "the table that was printed is not proved"
 }
 
+# Without optimization, as in a debug build: 12 agents are set up, and their table is computed, in 4 KiB of stack.
+debug_stack() {
+  local target=$1 format=$2 call
+  step "$target, $format: stack of a debug build"
+  ./cross.sh "$target" build --locked --quiet --no-default-features --features "$format,who-panics" --bin stacks --config 'profile.dev.opt-level=0'
+  ./qemu-run.sh "$out/$target/debug/stacks" | head -3 | tee "$scratch/debug"
+  for call in "the constructors" "the motions" Ecm::fill; do
+    limit "$scratch/debug" "bytes of stack of $call" 4096
+  done
+}
+
 # What it prints and sends, against the host.
 behaviour() {
   local target=$1 format=$2 programs=$out/$1/release
@@ -183,7 +194,7 @@ figures() {
     thumb*) printf '%9d  bytes of stack of the supervisor, bound\n' "$(tools/fwcheck.py "$programs/supervisor" --root supervisor::__cortex_m_rt_main 2>/dev/null)" ;;
   esac
   printf '%9d  bytes of code of a robot that keeps orders, the library not included\n' \
-    "$(tools/codesize.py "$programs/robot" 'supervisor/src/(robot|fleet)\.rs')"
+    "$(tools/codesize.py "$programs/robot" 'supervisor/src/(robot|agent)\.rs')"
   printf '%9d  bytes of flash of a robot with its line\n' "$(section "$programs/robot" $code .data)"
   printf '%9d  bytes of RAM of a robot among 30, its stack not included\n' "$(section "$programs/robot" .data .bss .uninit)"
   case $target in
@@ -319,6 +330,7 @@ one() {
   case $target:$format in
     thumbv6m-none-eabi:q16) overflow "$target" "$format" ;;
     thumbv7em-none-eabihf:f32)
+      debug_stack "$target" "$format"
       cortex_m7
       stm32f405
       control "$target" "$format"

@@ -101,8 +101,18 @@ pub struct Ecm<S, R, P> {
     len: usize,
     pieces: PieceStore<S, P>,
     fleet: FleetChecksum,
-    /// The agent of a table that holds one row only ([`Ecm::fill_row`]).
-    only: Option<usize>,
+    coverage: Coverage,
+}
+
+/// Which of the regions of its fleet a table holds.
+#[derive(Clone, Copy, Debug)]
+enum Coverage {
+    /// All.
+    All,
+    /// Those of one agent ([`Ecm::fill_row`]).
+    Row(usize),
+    /// Those of all pairs before this one ([`Ecm::fill_pairs`]).
+    Before([usize; 2]),
 }
 
 #[cfg(feature = "defmt")]
@@ -115,13 +125,13 @@ impl<S: Scalar, R, P> defmt::Format for Ecm<S, R, P> {
 impl<S: Scalar, R, P> Ecm<S, R, P> {
     /// An empty table, for a fleet without agents.
     pub const fn new(regions: R, pieces: P) -> Self {
-        Self { regions, len: 0, pieces: PieceStore::new(pieces), fleet: FleetChecksum::NOBODY, only: None }
+        Self { regions, len: 0, pieces: PieceStore::new(pieces), fleet: FleetChecksum::NOBODY, coverage: Coverage::All }
     }
 
     /// Removes all regions; the table is then that of a fleet without agents.
     pub fn clear(&mut self) {
         self.pieces.clear();
-        (self.len, self.fleet, self.only) = (0, FleetChecksum::NOBODY, None);
+        (self.len, self.fleet, self.coverage) = (0, FleetChecksum::NOBODY, Coverage::All);
     }
 
     /// Number of regions stored; each one serves both directions of its pair.
@@ -219,7 +229,16 @@ impl<S: Scalar, R: AsRef<[EcmEntry]>, P: AsRef<[Piece<S>]>> Ecm<S, R, P> {
     /// Checks that the table holds the regions of all agents of the fleet.
     pub(crate) fn holds_all(&self, fleet: &[Motion<'_, S>]) -> Result<(), MismatchError> {
         self.check(fleet)?;
-        self.only.map_or(Ok(()), |only| Err(MismatchError::OnlyRow(only)))
+        self.is_complete()
+    }
+
+    /// Checks that the table holds the regions of all agents of its fleet.
+    pub(crate) fn is_complete(&self) -> Result<(), MismatchError> {
+        match self.coverage {
+            Coverage::All => Ok(()),
+            Coverage::Row(only) => Err(MismatchError::OnlyRow(only)),
+            Coverage::Before(_) => Err(MismatchError::Unfinished),
+        }
     }
 
     /// Checks that the table holds the regions of these two agents, or, if both are the same, all regions of that
@@ -229,9 +248,9 @@ impl<S: Scalar, R: AsRef<[EcmEntry]>, P: AsRef<[Piece<S>]>> Ecm<S, R, P> {
         if let Some(agent) = agents.into_iter().find(|&agent| agent >= fleet.len()) {
             return Err(MismatchError::NoSuchAgent(agent));
         }
-        match self.only {
-            Some(only) if !agents.contains(&only) => Err(MismatchError::OnlyRow(only)),
-            _ => Ok(()),
+        match self.coverage {
+            Coverage::Row(only) if agents.contains(&only) => Ok(()),
+            _ => self.is_complete(),
         }
     }
 
@@ -287,6 +306,62 @@ where
         self.compute(fleet, |ecm| {
             (0..fleet.len()).try_for_each(|agent| ecm.add_pairs(fleet, agent, agent.saturating_add(1)..fleet.len()))
         })
+    }
+
+    /// Begins to compute the table of a whole fleet in parts, for a program that may not be busy for as long as [`Ecm::fill`] takes. Every
+    /// call of [`Ecm::fill_pairs`] then continues. Until the last one, other methods refuse the table ([`MismatchError::Unfinished`]);
+    /// [`Ecm::clear`] and those that fill the table begin anew.
+    ///
+    /// ```
+    /// # use pcr_core::{Ecm, EcmEntry, MismatchError, Motion, Path, Piece, Point, Pose, Profile, Radians};
+    /// # let stands = Path::<f64, 1>::starting_at(Pose { position: Point::new(0.0, 0.0), heading: Radians(0.0) })?;
+    /// # let profile = Profile::<f64, 1>::standing();
+    /// # let fleet = [Motion::new(stands.as_path(), profile.as_profile(), 0.25, 0.0)?; 5];
+    /// let mut ecm = Ecm::new([EcmEntry::EMPTY; 16], [Piece::EMPTY; 16]);
+    /// ecm.begin_fill(&fleet);
+    /// while !ecm.fill_pairs(&fleet, 1)? {
+    ///     // What cannot wait.
+    ///     assert_eq!(ecm.row(&fleet, 0).err(), Some(MismatchError::Unfinished));
+    /// }
+    /// assert_eq!(ecm.row(&fleet, 0)?.count(), 4);
+    /// # Ok::<(), Box<dyn core::error::Error>>(())
+    /// ```
+    pub fn begin_fill(&mut self, fleet: &[Motion<'_, S>]) {
+        self.clear();
+        (self.fleet, self.coverage) = (FleetChecksum::all(fleet), Coverage::Before([0, 1]));
+    }
+
+    /// Continues what [`Ecm::begin_fill`] has begun, with at most `pairs` pairs of agents. Returns whether the table is complete; it is then the
+    /// one that [`Ecm::fill`] makes.
+    ///
+    /// Cost: for each pair a box test, and, where the boxes meet, a few hundred operations for each pair of segments that do.
+    ///
+    /// # Errors
+    /// [`CapacityError`] if the storage is too small; the table is then empty, as after [`Ecm::clear`]. [`MismatchError::OtherFleet`] if the
+    /// table is that of another fleet; it is then unchanged.
+    pub fn fill_pairs(&mut self, fleet: &[Motion<'_, S>], pairs: usize) -> Result<bool, EcmError> {
+        self.check(fleet)?;
+        let Coverage::Before([mut agent, mut other]) = self.coverage else {
+            return self.is_complete().map(|()| true).map_err(EcmError::from);
+        };
+        for _ in 0..pairs {
+            if other >= fleet.len() {
+                agent = agent.saturating_add(1);
+                other = agent.saturating_add(1);
+            }
+            if other >= fleet.len() {
+                break;
+            }
+            let after = other.saturating_add(1);
+            if let Err(full) = self.add_pairs(fleet, agent, other..after) {
+                self.clear();
+                return Err(full.into());
+            }
+            other = after;
+        }
+        let is_complete = other >= fleet.len() && agent.saturating_add(2) >= fleet.len();
+        self.coverage = if is_complete { Coverage::All } else { Coverage::Before([agent, other]) };
+        Ok(is_complete)
     }
 
     /// Counts the regions and pieces that the table of a fleet takes. The pairs are counted one by one in the storage of this table, so
@@ -353,7 +428,7 @@ where
         }
         self.pieces.copy_from(&other.pieces)?;
         room.zip(used).for_each(|(slot, entry)| *slot = *entry);
-        (self.len, self.fleet, self.only) = (other.len, other.fleet, other.only);
+        (self.len, self.fleet, self.coverage) = (other.len, other.fleet, other.coverage);
         Ok(())
     }
 
@@ -368,7 +443,7 @@ where
             return Err(MismatchError::NoSuchAgent(agent).into());
         }
         self.compute(fleet, |ecm| ecm.add_row(fleet, agent))?;
-        self.only = Some(agent);
+        self.coverage = Coverage::Row(agent);
         Ok(())
     }
 
@@ -381,9 +456,7 @@ where
     pub fn insert(&mut self, fleet: &[Motion<'_, S>], agent: usize) -> Result<(), EcmError> {
         let own = fleet.get(agent).ok_or(MismatchError::NoSuchAgent(agent))?;
         let known = FleetChecksum::all(fleet);
-        if let Some(only) = self.only {
-            return Err(MismatchError::OnlyRow(only).into());
-        }
+        self.is_complete()?;
         if self.fleet != known.without(agent, own) {
             return Err(MismatchError::OtherFleet.into());
         }

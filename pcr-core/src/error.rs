@@ -157,6 +157,8 @@ pub enum MismatchError {
     OtherFleet,
     /// The table holds the regions of this agent only ([`Ecm::fill_row`](crate::Ecm::fill_row)).
     OnlyRow(usize),
+    /// The table is being computed in parts ([`Ecm::fill_pairs`](crate::Ecm::fill_pairs)), and is not complete yet.
+    Unfinished,
     /// The agent has no region at this index of the table.
     NoSuchRegion(usize),
 }
@@ -169,6 +171,7 @@ impl fmt::Display for MismatchError {
                 f.write_str("the table of regions is that of another fleet, or of motions with another lag")
             }
             Self::OnlyRow(agent) => write!(f, "the table holds the regions of agent {agent} only"),
+            Self::Unfinished => f.write_str("the table is not complete yet"),
             Self::NoSuchRegion(place) => write!(f, "the agent has no region in place {place} of the table"),
         }
     }

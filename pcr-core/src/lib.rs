@@ -17,6 +17,7 @@
 //! path         chains of segments, turns in place (ρ, Eq. 1)  Path, PathRef
 //! profile      length over time (λ, Eq. 1-3) and its inverse  Profile, ProfileRef, Limits
 //! motion       disc or outline + path + profile + start       Motion
+//! fleet_storage   paths and profiles of a fleet, in a static  FleetStorage, FleetMotions
 //! pair         closed forms in coordination space (l₁, l₂)    (internal: P1, P3, events, cells)
 //! piece_store  storage of region pieces, fixed capacity       Piece
 //! region       connected regions in path-time space (t, l)    RegionRef
@@ -49,6 +50,7 @@ mod bit_rows;
 mod crossing;
 mod ecm;
 mod error;
+mod fleet_storage;
 mod geometry;
 #[cfg(feature = "internals")]
 #[doc(hidden)]
@@ -71,6 +73,7 @@ mod segment;
 pub use crossing::{Crossing, crossings};
 pub use ecm::{Ecm, EcmCapacity, EcmEntry};
 pub use error::{CapacityError, EcmError, InvalidInput, MismatchError};
+pub use fleet_storage::{FleetMotions, FleetStorage, FleetStorageError, NewAgent, StagedAgent};
 pub use geometry::{Aabb, Direction, Interval, Point, Pose, Vector};
 pub use intervals::{Gaps, Union, gaps, union};
 pub use lap::Branch;

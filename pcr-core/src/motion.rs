@@ -95,7 +95,7 @@ impl<'a, S: Scalar> Motion<'a, S> {
         Self::of(path, profile, outline.into(), start)
     }
 
-    fn of(
+    pub(crate) fn of(
         path: PathRef<'a, S>,
         profile: ProfileRef<'a, S>,
         outline: OutlineRef<'a, S>,

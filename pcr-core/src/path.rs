@@ -52,18 +52,18 @@ impl<S: Scalar, const N: usize> Path<S, N> {
     ///
     /// # Errors
     /// As [`Segment::then_line`], and [`InvalidInput::Full`] if there are `N` segments already.
-    pub fn line(self, length: S) -> Result<Self, InvalidInput> {
-        let next = self.last().then_line(length)?;
-        self.with(next)
+    pub fn line(mut self, length: S) -> Result<Self, InvalidInput> {
+        self.append_line(length)?;
+        Ok(self)
     }
 
     /// Appends an arc of this radius \[m\] and length \[m\], at most a full turn; a length of 0 adds nothing.
     ///
     /// # Errors
     /// As [`Segment::then_arc`], and [`InvalidInput::Full`] if there are `N` segments already.
-    pub fn arc(self, radius: S, turn: TurnSide, length: S) -> Result<Self, InvalidInput> {
-        let next = self.last().then_arc(radius, turn, length)?;
-        self.with(next)
+    pub fn arc(mut self, radius: S, turn: TurnSide, length: S) -> Result<Self, InvalidInput> {
+        self.append_arc(radius, turn, length)?;
+        Ok(self)
     }
 
     /// Appends an arc of this radius \[m\] that turns by `sweep` \[rad\], to the left if positive, by at most a full
@@ -81,10 +81,10 @@ impl<S: Scalar, const N: usize> Path<S, N> {
     /// assert!((end.x - 2.0).abs() < 1e-15 && (end.y + 2.0).abs() < 1e-15);
     /// # Ok::<(), pcr_core::InvalidInput>(())
     /// ```
-    pub fn arc_by(self, radius: S, sweep: S) -> Result<Self, InvalidInput> {
-        let sweep = in_range(sweep, "sweep")?;
-        let turn = if sweep < S::ZERO { TurnSide::Right } else { TurnSide::Left };
-        self.arc(radius, turn, sweep.abs().times(radius).narrow())
+    pub fn arc_by(mut self, radius: S, sweep: S) -> Result<Self, InvalidInput> {
+        let (turn, length) = swept(radius, sweep)?;
+        self.append_arc(radius, turn, length)?;
+        Ok(self)
     }
 
     /// Appends a turn in place by `sweep` \[rad\], to the left if positive, by at most a full turn in either direction. The reference point stays, and
@@ -105,11 +105,10 @@ impl<S: Scalar, const N: usize> Path<S, N> {
     /// assert_eq!(end.heading, Radians(quarter));
     /// # Ok::<(), pcr_core::InvalidInput>(())
     /// ```
-    pub fn pivot(self, lever: S, sweep: S) -> Result<Self, InvalidInput> {
-        let sweep = in_range(sweep, "sweep")?;
-        let turn = if sweep < S::ZERO { TurnSide::Right } else { TurnSide::Left };
-        let next = self.last().then_pivot(lever, turn, sweep.abs().times(lever).narrow())?;
-        self.with(next)
+    pub fn pivot(mut self, lever: S, sweep: S) -> Result<Self, InvalidInput> {
+        let (turn, length) = swept(lever, sweep)?;
+        self.append_pivot(lever, turn, length)?;
+        Ok(self)
     }
 
     /// Turns the direction of travel, to the left if the angle is positive. It needs no segment and has no length. A body other than a disc
@@ -119,8 +118,7 @@ impl<S: Scalar, const N: usize> Path<S, N> {
     /// # Errors
     /// As [`Segment::turned`].
     pub fn turn(mut self, by: S::Angle) -> Result<Self, InvalidInput> {
-        let last = self.segments.last_mut().unwrap_or(&mut self.origin);
-        *last = last.turned(by)?;
+        self.turn_by(by)?;
         Ok(self)
     }
 
@@ -131,8 +129,7 @@ impl<S: Scalar, const N: usize> Path<S, N> {
     /// # Errors
     /// As [`Segment::facing`].
     pub fn facing(mut self, angle: S::Angle) -> Result<Self, InvalidInput> {
-        self.origin = self.origin.facing(angle)?;
-        self.facing = Some(self.origin.body());
+        self.face(angle)?;
         Ok(self)
     }
 
@@ -154,11 +151,8 @@ impl<S: Scalar, const N: usize> Path<S, N> {
     /// # Ok::<(), pcr_core::InvalidInput>(())
     /// ```
     pub fn reverse(mut self) -> Result<Self, InvalidInput> {
-        let facing = self.facing.unwrap_or(Direction::X);
-        let facing = Direction { cos: -facing.cos, sin: -facing.sin };
-        self.origin = self.origin.faced(facing)?;
-        self.facing = Some(facing);
-        self.turn(S::Angle::atan2(S::ZERO, -S::LIMIT))
+        self.change_gear()?;
+        Ok(self)
     }
 
     /// The path in the form that algorithms take.
@@ -166,17 +160,89 @@ impl<S: Scalar, const N: usize> Path<S, N> {
         let segments = if self.segments.is_empty() { core::slice::from_ref(&self.origin) } else { &self.segments[..] };
         PathRef { segments }
     }
+}
 
-    fn last(&self) -> &Segment<S> {
-        self.segments.last().unwrap_or(&self.origin)
+impl<S: Scalar, const N: usize> SegmentChain<S> for Path<S, N> {
+    fn last(&mut self) -> Result<&mut Segment<S>, InvalidInput> {
+        Ok(self.segments.last_mut().unwrap_or(&mut self.origin))
     }
 
-    fn with(mut self, next: Segment<S>) -> Result<Self, InvalidInput> {
+    fn body(&mut self) -> &mut Option<Direction<S>> {
+        &mut self.facing
+    }
+
+    fn push(&mut self, next: Segment<S>) -> Result<(), InvalidInput> {
+        self.segments.push(next).map_err(|_| InvalidInput::Full("segment"))
+    }
+}
+
+/// Side and length of an arc with this radius, or a turn in place with this lever \[m\], that turns by `sweep` \[rad\].
+pub(crate) fn swept<S: Scalar>(lever: S, sweep: S) -> Result<(TurnSide, S), InvalidInput> {
+    let sweep = in_range(sweep, "sweep")?;
+    let turn = if sweep < S::ZERO { TurnSide::Right } else { TurnSide::Left };
+    Ok((turn, sweep.abs().times(lever).narrow()))
+}
+
+/// A path to which segments are appended, wherever they are stored: in the path itself, or in the storage of a fleet.
+pub(crate) trait SegmentChain<S: Scalar> {
+    /// The last segment, or the one without a length with which the path begins.
+    fn last(&mut self) -> Result<&mut Segment<S>, InvalidInput>;
+
+    /// Angle from the direction of travel to the heading of the body, for the next segments; `None` for a body that looks ahead.
+    fn body(&mut self) -> &mut Option<Direction<S>>;
+
+    /// Stores a segment with a length behind all others.
+    fn push(&mut self, next: Segment<S>) -> Result<(), InvalidInput>;
+
+    fn append(&mut self, next: Segment<S>) -> Result<(), InvalidInput> {
         if next.length > S::ZERO {
-            let next = if let Some(facing) = self.facing { next.faced(facing)? } else { next };
-            self.segments.push(next).map_err(|_| InvalidInput::Full("segment"))?;
+            let next = if let Some(facing) = *self.body() { next.faced(facing)? } else { next };
+            self.push(next)?;
         }
-        Ok(self)
+        Ok(())
+    }
+
+    fn append_line(&mut self, length: S) -> Result<(), InvalidInput> {
+        let next = self.last()?.then_line(length)?;
+        self.append(next)
+    }
+
+    fn append_arc(&mut self, radius: S, turn: TurnSide, length: S) -> Result<(), InvalidInput> {
+        let next = self.last()?.then_arc(radius, turn, length)?;
+        self.append(next)
+    }
+
+    fn append_pivot(&mut self, lever: S, turn: TurnSide, length: S) -> Result<(), InvalidInput> {
+        let next = self.last()?.then_pivot(lever, turn, length)?;
+        self.append(next)
+    }
+
+    fn turn_by(&mut self, by: S::Angle) -> Result<(), InvalidInput> {
+        let last = self.last()?;
+        *last = last.turned(by)?;
+        Ok(())
+    }
+
+    fn face(&mut self, angle: S::Angle) -> Result<(), InvalidInput> {
+        let facing = self.last()?.facing(angle)?.body();
+        self.set_body(facing)
+    }
+
+    fn change_gear(&mut self) -> Result<(), InvalidInput> {
+        let Direction { cos, sin } = self.body().unwrap_or(Direction::X);
+        self.set_body(Direction { cos: -cos, sin: -sin })?;
+        self.turn_by(S::Angle::atan2(S::ZERO, -S::LIMIT))
+    }
+
+    /// Sets the angle of the body for the next segments, and of a path that has none yet.
+    fn set_body(&mut self, facing: Direction<S>) -> Result<(), InvalidInput> {
+        let last = self.last()?;
+        let faced = last.faced(facing)?;
+        if last.length <= S::ZERO {
+            *last = faced;
+        }
+        *self.body() = Some(facing);
+        Ok(())
     }
 }
 
@@ -209,6 +275,11 @@ impl<'a, S: Scalar> PathRef<'a, S> {
             }
         }
         Ok(Self { segments })
+    }
+
+    /// The path of segments that were built one from the other, which was checked.
+    pub(crate) const fn of(segments: &'a [Segment<S>]) -> Self {
+        Self { segments }
     }
 
     /// The lines, arcs and turns in place.

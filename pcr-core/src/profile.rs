@@ -382,6 +382,11 @@ impl<'a, S: Scalar> ProfileRef<'a, S> {
         Ok(Self { phases })
     }
 
+    /// The profile of phases that were built one from the other, which was checked.
+    pub(crate) const fn of(phases: &'a [Phase<S>]) -> Self {
+        Self { phases }
+    }
+
     /// The phases.
     pub fn phases(self) -> &'a [Phase<S>] {
         self.phases

@@ -126,6 +126,67 @@ fn a_table_that_is_not_filled_is_empty() {
     }
 }
 
+/// All that a table holds, to be compared.
+fn held(ecm: &Ecm<f64, Vec<EcmEntry>, Vec<Piece<f64>>>, fleet: &[Motion<'_, f64>]) -> Vec<String> {
+    let regions = ecm.regions(fleet).expect("its fleet");
+    regions.map(|region| format!("{:?}", (region.ego(), region.other(), region.pieces().collect::<Vec<_>>()))).collect()
+}
+
+#[test]
+fn a_table_in_parts_is_that_in_one() {
+    for count in 0..6 {
+        let courses = ways(count);
+        let fleet = motions(&courses);
+        for agents in 0..=fleet.len() {
+            let fleet = &fleet[..agents];
+            let whole = Ecm::build(vec![EcmEntry::EMPTY; 8], vec![Piece::EMPTY; 8], fleet).expect("room");
+            for pairs in 1..8 {
+                let mut ecm = Ecm::new(vec![EcmEntry::EMPTY; 8], vec![Piece::EMPTY; 8]);
+                ecm.begin_fill(fleet);
+                let (all, mut calls) = (agents * agents.saturating_sub(1) / 2, 0);
+                while !ecm.fill_pairs(fleet, pairs).expect("room and its fleet") {
+                    calls += 1;
+                    assert!(calls * pairs < all, "{agents} agents, {pairs} pairs a call");
+                }
+                assert_eq!(held(&ecm, fleet), held(&whole, fleet));
+                assert_eq!(ecm.fill_pairs(fleet, 1), Ok(true));
+            }
+        }
+    }
+}
+
+#[test]
+fn a_table_that_is_not_complete_answers_nothing() {
+    let courses = ways(4);
+    let fleet = motions(&courses);
+    let mut orders = empty(8, 8);
+    orders.begin_fill(&fleet);
+    assert_eq!(orders.fill_pairs(&fleet, 3), Ok(false));
+    assert_eq!(orders.ecm().len(), 3);
+    assert!(orders.ecm().regions(&fleet).is_err_and(|error| error == MismatchError::Unfinished));
+    assert!(orders.ecm().row(&fleet, 0).is_err_and(|error| error == MismatchError::Unfinished));
+    assert!(orders.ecm().pair(&fleet, 0, 1).is_err_and(|error| error == MismatchError::Unfinished));
+    assert_eq!(orders.hold(&fleet, 0, &[Progress::at_rest(0.0); 5]).err(), Some(MismatchError::Unfinished));
+    assert_eq!(orders.remove(&fleet, 4), Err(MismatchError::Unfinished));
+    let last = fleet[4];
+    assert_eq!(orders.insert(&fleet, 4), Err(EcmError::Mismatch(MismatchError::Unfinished)));
+    assert_eq!(orders.replace(&mut fleet.clone(), 4, last), Err(EcmError::Mismatch(MismatchError::Unfinished)));
+    // Another fleet is refused, and what is there stays.
+    assert_eq!(orders.fill_pairs(&fleet[..4], 3), Err(EcmError::Mismatch(MismatchError::OtherFleet)));
+    assert_eq!(orders.fill_pairs(&fleet, 100), Ok(true));
+    orders.decide(&fleet, 0, 2, PassingState::First, 0.0).expect("its fleet");
+    assert_eq!(orders.fill_pairs(&fleet, 1), Ok(true));
+    let undecided = |other| (other, PassingState::Undecided);
+    assert_eq!(passes(&orders, &fleet), [undecided(1), (2, PassingState::First), undecided(3), undecided(4)]);
+    // One that does not fit is empty, and can be filled again.
+    let mut ecm = Ecm::new(vec![EcmEntry::EMPTY; 3], vec![Piece::EMPTY; 8]);
+    ecm.begin_fill(&fleet);
+    assert_eq!(ecm.fill_pairs(&fleet, 3), Ok(false));
+    assert_eq!(ecm.fill_pairs(&fleet, 1), Err(EcmError::Full(CapacityError::Regions { needed: 4, capacity: 3 })));
+    assert_eq!((ecm.len(), ecm.pieces()), (0, 0));
+    assert_eq!(ecm.fill(&fleet[..4]), Ok(()));
+}
+
 #[test]
 fn no_path_of_another_fleet_or_of_another_row_is_exchanged() {
     let (courses, others) = (ways(3), ways(4));

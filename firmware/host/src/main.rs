@@ -17,9 +17,9 @@ mod robot;
 mod serial;
 
 use pcr_certify::table::{Checker, CoverageMargin};
-use pcr_core::{Ecm, EcmEntry, Motion, Outline, Piece};
+use pcr_core::{Ecm, EcmEntry, FleetMotions, FleetStorage, Motion, Outline, Piece};
 use pcr_supervisor::scenario::{self, AGENTS, PIECES, REGIONS, SEGMENTS};
-use pcr_supervisor::{Agent, Number, Step, Store, dump};
+use pcr_supervisor::{Agent, Number, Step, dump};
 use std::error::Error;
 use std::io::{self, Write};
 
@@ -79,19 +79,27 @@ fn run<S: Number>(what: &str, agents: BuiltIn<S>, rest: &[&str]) -> Result<(), B
 /// The built-in agents of a format.
 type BuiltIn<S> = &'static [Agent<S, &'static [Step<S>]>];
 
+type Store<S> = FleetStorage<'static, S, AGENTS, SEGMENTS>;
+
 /// The fleet of a format, stored.
-fn store<S: Number>(agents: BuiltIn<S>) -> Result<Store<S, AGENTS, SEGMENTS>, Box<dyn Error>> {
+fn store<S: Number>(agents: BuiltIn<S>) -> Result<Store<S>, Box<dyn Error>> {
     let mut store = Store::new();
     for agent in agents {
-        store.add(agent)?;
+        agent.add_to(&mut store)?;
     }
     Ok(store)
+}
+
+fn motions<S: Number>(store: &Store<S>) -> Result<FleetMotions<'_, S, AGENTS>, Box<dyn Error>> {
+    let mut fleet = FleetMotions::new();
+    fleet.fill(store)?;
+    Ok(fleet)
 }
 
 /// Prints what the program `rectangles` prints, but for its figures.
 fn rectangles<S: Number>(agents: BuiltIn<S>) -> Result<(), Box<dyn Error>> {
     let store = store(agents)?;
-    let discs = store.motions()?;
+    let discs = motions(&store)?;
     let outline = |disc: &Motion<'_, S>| {
         let (length, width) = (disc.radius(), disc.radius().half());
         Outline::<S, 4>::rectangle(length, length, width, width, S::ZERO)
@@ -114,7 +122,7 @@ fn rectangles<S: Number>(agents: BuiltIn<S>) -> Result<(), Box<dyn Error>> {
 /// Prints what the demo prints.
 fn table<S: Number>(agents: BuiltIn<S>) -> Result<(), Box<dyn Error>> {
     let store = store(agents)?;
-    let fleet = store.motions()?;
+    let fleet = motions(&store)?;
     let ecm = Ecm::build([EcmEntry::EMPTY; REGIONS], [Piece::EMPTY; PIECES], &fleet)?;
     let mut out = io::stdout().lock();
     out.write_all(dump::HEADING)?;

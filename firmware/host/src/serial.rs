@@ -1,7 +1,7 @@
 //! Talks to a supervisor and checks what it says against the same computation here.
 
 use crate::passing::Supervisor;
-use crate::{BuiltIn, store};
+use crate::{BuiltIn, motions, store};
 use pcr_core::{Ecm, EcmEntry, Limits, Motion, Piece, earliest_start};
 use pcr_supervisor::frame::{self, Damage, Reads, Receiver, Tag, VERSION};
 use pcr_supervisor::message::{ConflictRecord, PieceRecord, Reason, Refusal, RegionRecord, text};
@@ -294,7 +294,7 @@ fn exchange<S: Number>(link: &mut Link, agents: BuiltIn<S>) -> Result<(), Box<dy
 /// The table of the fleet that was sent is that of the same fleet here, bit by bit.
 fn table<S: Number>(link: &mut Link, agents: BuiltIn<S>) -> Result<(), Box<dyn Error>> {
     let store = store(agents)?;
-    let fleet = store.motions()?;
+    let fleet = motions(&store)?;
     let ecm = Ecm::build([EcmEntry::EMPTY; REGIONS], [Piece::EMPTY; PIECES], &fleet)?;
     let computed = Answer::Computed { regions: u16::try_from(ecm.len())?, pieces: u16::try_from(ecm.pieces())? };
     link.expect(&Request::<S>::Compute, &computed)?;
@@ -344,7 +344,7 @@ fn conflicts<S: Number>(link: &mut Link, fleet: &[Motion<'_, S>]) -> Result<u16,
 /// Agents are planned again one after the other, on both sides alike; afterwards no two agents overlap, though they may touch.
 fn replan<S: Number>(link: &mut Link, agents: BuiltIn<S>) -> Result<(), Box<dyn Error>> {
     let store = store(agents)?;
-    let mut fleet = store.motions()?;
+    let mut fleet = motions(&store)?;
     let ecm = Ecm::build([EcmEntry::EMPTY; REGIONS], [Piece::EMPTY; PIECES], &fleet)?;
     let before = conflicts(link, &fleet)?;
     let mut planned = 0;

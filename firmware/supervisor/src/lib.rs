@@ -4,8 +4,7 @@
 //!
 //! ```text
 //! number     what a number format has to offer besides the arithmetic    Number
-//! agent      an agent as it is sent, and its motion                      Agent, Step
-//! fleet      storage for the motions of a fleet, without a heap          Store
+//! agent      an agent as it is sent, and how it comes into storage      Agent, Step
 //! message    requests and answers, regions as they are sent              Request, Answer
 //! frame      their bytes on the line: COBS, check, version               Frame, Receiver
 //! table      what a supervisor keeps of its fleet                        Table
@@ -22,7 +21,6 @@
 pub mod agent;
 pub mod client;
 pub mod dump;
-pub mod fleet;
 pub mod frame;
 pub mod message;
 pub mod number;
@@ -35,7 +33,6 @@ pub mod traffic;
 
 pub use agent::{Agent, Step};
 pub use client::{Client, Event};
-pub use fleet::{Motions, Store};
 pub use message::{Answer, Request};
 pub use number::Number;
 pub use robot::{Briefing, Robot};

@@ -5,7 +5,7 @@
 //! loop {
 //!     briefing.clear();                                  // Request::Orders, answer by answer
 //!     briefing.take(&answer)?;
-//!     briefing.put_motions(&mut fleet)?;
+//!     fleet.fill(briefing.paths())?;
 //!     robot.brief(&briefing, &fleet, at)?;
 //!     loop {
 //!         robot.hear(&briefing, &answer);                // Answer::Place, Answer::Go
@@ -20,14 +20,13 @@
 //! ([`Unclear::Begun`]): it stays where it is until it knows its place on the path that it was told, calls
 //! [`Robot::resume`], and is briefed again.
 
-use crate::fleet::{Motions, Store};
 use crate::message::{Answer, Edition};
 use crate::number::Number;
 use crate::table::Ordered;
 use heapless::Vec;
 use pcr_core::{
-    CapacityError, EcmEntry, EcmError, Interval, InvalidInput, MismatchError, Motion, MovementAuthority, PassingState,
-    Piece, PrecedenceTable, Progress, RegionPrecedence, Scalar,
+    CapacityError, EcmEntry, EcmError, FleetStorage, Interval, InvalidInput, MismatchError, Motion, MovementAuthority,
+    PassingState, Piece, PrecedenceTable, Progress, RegionPrecedence, Scalar,
 };
 
 /// The orders of one robot as they are received: the paths of at most `A` robots, including its own, with `N` segments
@@ -41,7 +40,7 @@ pub struct Briefing<S: Number, const A: usize, const N: usize, const R: usize> {
     path: Option<(u16, Interval<S>)>,
     /// Indices of the robots, in increasing order, and their paths.
     members: Vec<u16, A>,
-    paths: Store<S, A, N>,
+    paths: FleetStorage<'static, S, A, N>,
     passings: Vec<Passing<S>, R>,
 }
 
@@ -55,7 +54,7 @@ struct Passing<S> {
 impl<S: Number, const A: usize, const N: usize, const R: usize> Briefing<S, A, N, R> {
     /// An empty briefing for the robot with this index.
     pub const fn new(agent: u16) -> Self {
-        Self { agent, edition: None, path: None, members: Vec::new(), paths: Store::new(), passings: Vec::new() }
+        Self { agent, edition: None, path: None, members: Vec::new(), paths: FleetStorage::new(), passings: Vec::new() }
     }
 
     /// Removes everything.
@@ -76,7 +75,7 @@ impl<S: Number, const A: usize, const N: usize, const R: usize> Briefing<S, A, N
         match *answer {
             Answer::Member { agent, edition, ref with } => {
                 self.is_of(edition)?;
-                self.paths.add(with)?;
+                with.add_to(&mut self.paths)?;
                 self.members.push(agent).map_err(|_| InvalidInput::Full("agent"))?;
             }
             Answer::Passing { other, edition, pass, from } => {
@@ -97,14 +96,9 @@ impl<S: Number, const A: usize, const N: usize, const R: usize> Briefing<S, A, N
         if *self.edition.get_or_insert(edition) == edition { Ok(()) } else { Err(Unclear::Disagreement) }
     }
 
-    /// Writes the motions of all robots, sorted by index, to an empty list. They are written in place because a return
-    /// value would be on the stack more than once.
-    ///
-    /// # Errors
-    /// As [`Store::put_motions`].
-    #[inline(never)]
-    pub fn put_motions<'a>(&'a self, motions: &mut Motions<'a, S, A>) -> Result<(), InvalidInput> {
-        self.paths.put_motions(motions)
+    /// Storage of the paths of all robots, sorted by index.
+    pub fn paths(&self) -> &FleetStorage<'static, S, A, N> {
+        &self.paths
     }
 
     /// Edition of the orders, edition in which the robot got its path, and what is known of its place.

@@ -1,7 +1,6 @@
 //! The supervisor without the line: keeps a fleet and its table, and answers requests.
 
 use crate::agent::{Agent, MAX_STEPS, Step};
-use crate::fleet::{Motions, Parts, Store};
 use crate::message::{
     Answer, ConflictRecord, Edition, PieceRecord, Refusal, RegionRecord, Request, Terms, short, text,
 };
@@ -9,7 +8,10 @@ use crate::number::Number;
 use crate::table::Table;
 use core::cell::RefCell;
 use heapless::Vec;
-use pcr_core::{Ecm, EcmEntry, EcmError, Interval, Limits, Motion, Piece, Pose, earliest_start};
+use pcr_core::{
+    Ecm, EcmEntry, EcmError, FleetMotions, FleetStorage, Interval, InvalidInput, Limits, Motion, Piece, Pose,
+    StagedAgent, earliest_start,
+};
 
 pub use crate::table::Regions;
 
@@ -35,7 +37,9 @@ impl<S: Number, F: FnMut(Answer<S>)> Replies<S> for F {
 /// [`Traffic`](crate::Traffic).
 #[derive(Debug)]
 pub struct Service<S: Number, const A: usize, const N: usize, const R: usize, const P: usize, T = Regions<S, R, P>> {
-    fleet: Store<S, A, N>,
+    fleet: FleetStorage<'static, S, A, N>,
+    /// Limits of the agents, which are sent with their paths.
+    limits: Vec<Limits<S>, A>,
     table: T,
     built_in: &'static [Agent<S, &'static [Step<S>]>],
 }
@@ -52,7 +56,7 @@ impl<S: Number, T, const A: usize, const N: usize, const R: usize, const P: usiz
     pub const fn with(table: T, built_in: &'static [Agent<S, &'static [Step<S>]>]) -> Self {
         // A row has at most this many records, and each record has an index of 16 bits.
         const { assert!(R + P + A < u16::MAX as usize, "places are sent in 16 bits") };
-        Self { fleet: Store::new(), table, built_in }
+        Self { fleet: FleetStorage::new(), limits: Vec::new(), table, built_in }
     }
 }
 
@@ -112,6 +116,7 @@ where
     fn clear(&mut self) {
         self.table.clear();
         self.fleet.clear();
+        self.limits.clear();
     }
 
     fn agents(&self) -> Answer<S> {
@@ -121,7 +126,9 @@ where
     #[inline(never)]
     fn add<Q: AsRef<[Step<S>]>>(&mut self, agent: &Agent<S, Q>) -> Result<Answer<S>, Refusal> {
         let index = self.fleet.len();
-        self.fleet.add(agent).map_err(|invalid| Refusal::agent(index, invalid))?;
+        agent.add_to(&mut self.fleet).map_err(|invalid| Refusal::agent(index, invalid))?;
+        // There is room for as many limits as agents.
+        self.limits.push(agent.limits).map_err(|_| Refusal::agent(index, InvalidInput::Full("agent")))?;
         Ok(self.agents())
     }
 
@@ -141,13 +148,14 @@ where
 
     #[inline(never)]
     fn replace(&mut self, index: usize, agent: &Agent<S>) -> Result<Answer<S>, Refusal> {
-        let staged = self.fleet.stage(agent).map_err(|invalid| Refusal::agent(index, invalid))?;
-        let mut motions = Motions::new();
-        put(&self.fleet, &mut motions)?;
-        let motion = self.fleet.staged(&staged).map_err(|invalid| Refusal::agent(index, invalid))?;
+        let staged = agent.stage(&mut self.fleet).map_err(|invalid| Refusal::agent(index, invalid))?;
+        let mut motions = FleetMotions::new();
+        put(staged.storage(), &mut motions)?;
+        let motion = staged.motion().map_err(|invalid| Refusal::agent(index, invalid))?;
         let replaced = self.table.replace(&mut motions, index, motion);
         drop(motions);
-        self.fleet.settle(index, staged).map_err(|rejected| Refusal::change(index, rejected))?;
+        staged.replace(index).map_err(|rejected| Refusal::change(index, rejected))?;
+        set(&mut self.limits, index, agent.limits);
         // The new fleet has no table: there was none before, or the regions do not fit. The old one goes, so that it is not taken for
         // that of a fleet whose paths are those again.
         if replaced.is_err() {
@@ -158,11 +166,17 @@ where
 
     #[inline(never)]
     fn remove(&mut self, index: usize) -> Result<Answer<S>, Refusal> {
-        let mut motions = Motions::new();
+        let mut motions = FleetMotions::new();
         put(&self.fleet, &mut motions)?;
         let erased = self.table.erase(&motions, index);
         drop(motions);
         self.fleet.remove(index).map_err(|rejected| Refusal::change(index, rejected))?;
+        for place in index..self.limits.len() {
+            if let Some(&next) = self.limits.get(place.saturating_add(1)) {
+                set(&mut self.limits, place, next);
+            }
+        }
+        self.limits.pop();
         // It did not belong to the fleet before.
         if erased.is_err() {
             self.table.clear();
@@ -173,7 +187,7 @@ where
     /// Computes the table, unless it is that of the fleet already.
     #[inline(never)]
     fn compute(&mut self, replies: &mut impl Replies<S>) -> Result<Answer<S>, Refusal> {
-        let mut motions = Motions::new();
+        let mut motions = FleetMotions::new();
         put(&self.fleet, &mut motions)?;
         if self.table.regions().regions(&motions).is_err() {
             build(&mut self.table, &motions, replies)
@@ -185,7 +199,7 @@ where
 
     #[inline(never)]
     fn order(&mut self, terms: Terms<S>) -> Result<Answer<S>, Refusal> {
-        let mut motions = Motions::new();
+        let mut motions = FleetMotions::new();
         put(&self.fleet, &mut motions)?;
         self.table.order(&motions, terms).map(Answer::Edition)
     }
@@ -198,16 +212,19 @@ where
         at: Interval<S>,
         send: &mut impl FnMut(Answer<S>),
     ) -> Result<Answer<S>, Refusal> {
-        let mut motions = Motions::new();
+        let mut motions = FleetMotions::new();
         put(&self.fleet, &mut motions)?;
         self.table.report(&motions, agent, edition, at, send)
     }
 
     #[inline(never)]
     fn orders(&self, agent: usize, send: &mut impl FnMut(Answer<S>)) -> Result<Answer<S>, Refusal> {
-        let mut motions = Motions::new();
+        let mut motions = FleetMotions::new();
         put(&self.fleet, &mut motions)?;
-        let with = |agent| self.fleet.agent(agent).map_err(|rejected| Refusal::change(agent, rejected));
+        let with = |agent: usize| {
+            let (motion, limits) = motions.get(agent).zip(self.limits.get(agent)).ok_or(no_such_agent(agent))?;
+            Agent::of(motion, *limits).map_err(|invalid| Refusal::agent(agent, invalid))
+        };
         self.table.orders(&motions, agent, with, send)
     }
 
@@ -221,35 +238,25 @@ where
         path: Vec<Step<S>, MAX_STEPS>,
     ) -> Result<Answer<S>, Refusal> {
         let agent = {
-            let mut motions = Motions::new();
+            let mut motions = FleetMotions::new();
             put(&self.fleet, &mut motions)?;
             self.table.arrived(&motions, index)?;
-            let before = motions.get(index).ok_or(Refusal::NoSuchAgent { agent: short(index) })?;
+            let before = motions.get(index).ok_or(no_such_agent(index))?;
             let position = before.path().point_at(before.path().length());
             let (radius, start_time) = (before.radius(), before.time().lo);
             Agent { radius, start_time, limits, start: Pose { position, heading }, path }
         };
-        let staged = self.fleet.stage(&agent).map_err(|invalid| Refusal::agent(index, invalid))?;
-        let admitted = self.exchange(index, &staged);
-        if admitted.is_err() {
-            self.fleet.unstage(&staged);
-        }
-        let edition = admitted?;
-        self.fleet.settle(index, staged).map_err(|rejected| Refusal::change(index, rejected))?;
+        let staged = agent.stage(&mut self.fleet).map_err(|invalid| Refusal::agent(index, invalid))?;
+        let edition = exchange(&mut self.table, index, &staged)?;
+        staged.replace(index).map_err(|rejected| Refusal::change(index, rejected))?;
+        set(&mut self.limits, index, limits);
         Ok(Answer::Edition(edition))
     }
 
-    fn exchange(&mut self, index: usize, staged: &Parts<S>) -> Result<Edition, Refusal> {
-        let mut motions = Motions::new();
-        put(&self.fleet, &mut motions)?;
-        let motion = self.fleet.staged(staged).map_err(|invalid| Refusal::agent(index, invalid))?;
-        self.table.admit(&mut motions, index, motion)
-    }
-
     /// Writes the motions of the fleet to a list; refuses if the fleet has no such agent.
-    fn put_of<'a>(&'a self, agent: usize, motions: &mut Motions<'a, S, A>) -> Result<(), Refusal> {
+    fn put_of<'a>(&'a self, agent: usize, motions: &mut FleetMotions<'a, S, A>) -> Result<(), Refusal> {
         if agent >= self.fleet.len() {
-            return Err(Refusal::NoSuchAgent { agent: short(agent) });
+            return Err(no_such_agent(agent));
         }
         put(&self.fleet, motions)
     }
@@ -257,7 +264,7 @@ where
     /// The interval of the agent's new motion.
     #[inline(never)]
     fn replan(&mut self, agent: usize, replies: &mut impl Replies<S>) -> Result<Interval<S>, Refusal> {
-        let mut motions = Motions::new();
+        let mut motions = FleetMotions::new();
         self.put_of(agent, &mut motions)?;
         // The regions are iterated several times, so the iterator is cloned.
         let replies = RefCell::new(replies);
@@ -274,7 +281,7 @@ where
 
     #[inline(never)]
     fn row(&self, ego: usize, replies: &mut impl Replies<S>) -> Result<Answer<S>, Refusal> {
-        let mut motions = Motions::new();
+        let mut motions = FleetMotions::new();
         self.put_of(ego, &mut motions)?;
         let mut count = 0_u16;
         for region in self.table.regions().row(&motions, ego)? {
@@ -287,7 +294,7 @@ where
 
     #[inline(never)]
     fn conflicts(&self, replies: &mut impl Replies<S>) -> Result<Answer<S>, Refusal> {
-        let mut motions = Motions::new();
+        let mut motions = FleetMotions::new();
         put(&self.fleet, &mut motions)?;
         let mut count = 0_u16;
         for first in 0..motions.len() {
@@ -303,12 +310,36 @@ where
     }
 }
 
-/// Writes the motions of a fleet to a list in place; a return value would be on the stack more than once.
+fn no_such_agent(agent: usize) -> Refusal {
+    Refusal::NoSuchAgent { agent: short(agent) }
+}
+
+fn set<S>(limits: &mut [Limits<S>], agent: usize, to: Limits<S>) {
+    if let Some(place) = limits.get_mut(agent) {
+        *place = to;
+    }
+}
+
+// Not inlined: its copies of a motion would stay on the stack while the caller works with the motions.
+#[inline(never)]
 fn put<'a, S: Number, const A: usize, const N: usize>(
-    fleet: &'a Store<S, A, N>,
-    motions: &mut Motions<'a, S, A>,
+    fleet: &'a FleetStorage<'_, S, A, N>,
+    motions: &mut FleetMotions<'a, S, A>,
 ) -> Result<(), Refusal> {
-    fleet.put_motions(motions).map_err(|invalid| Refusal::agent(fleet.len(), invalid))
+    motions.fill(fleet).map_err(|invalid| Refusal::agent(fleet.len(), invalid))
+}
+
+/// Tries the new path of a robot in the table.
+#[inline(never)]
+fn exchange<S: Number, const A: usize, const N: usize, const R: usize, const P: usize>(
+    table: &mut impl Table<S, R, P>,
+    index: usize,
+    staged: &StagedAgent<'_, '_, S, A, N, 3>,
+) -> Result<Edition, Refusal> {
+    let mut motions = FleetMotions::new();
+    put(staged.storage(), &mut motions)?;
+    let motion = staged.motion().map_err(|invalid| Refusal::agent(index, invalid))?;
+    table.admit(&mut motions, index, motion)
 }
 
 /// Computes the table of a fleet, one agent at a time. If there is no room, it is empty afterwards.

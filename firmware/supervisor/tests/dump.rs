@@ -4,16 +4,17 @@ use pcr_certify::device_dump::decode;
 use pcr_certify::error::CertifyError;
 use pcr_certify::raw::RawTable;
 use pcr_certify::table::{Checker, CoverageMargin};
-use pcr_core::{Ecm, EcmEntry, MismatchError, Piece};
+use pcr_core::{Ecm, EcmEntry, FleetMotions, FleetStorage, MismatchError, Piece};
 use pcr_supervisor::scenario::{self, AGENTS, PIECES, REGIONS, SEGMENTS};
-use pcr_supervisor::{Agent, Number, Step, Store, dump};
+use pcr_supervisor::{Agent, Number, Step, dump};
 
 type BuiltIn<S> = &'static [Agent<S, &'static [Step<S>]>];
 
 fn printed<S: Number>(agents: BuiltIn<S>) -> String {
-    let mut store = Store::<S, AGENTS, SEGMENTS>::new();
-    agents.iter().for_each(|agent| assert!(store.add(agent).is_ok()));
-    let fleet = store.motions().unwrap();
+    let mut store = FleetStorage::<S, AGENTS, SEGMENTS>::new();
+    agents.iter().for_each(|agent| assert!(agent.add_to(&mut store).is_ok()));
+    let mut fleet = FleetMotions::new();
+    fleet.fill(&store).unwrap();
     let ecm = Ecm::build([EcmEntry::EMPTY; REGIONS], [Piece::EMPTY; PIECES], &fleet).unwrap();
     let mut bytes = Vec::new();
     dump::table(&fleet, &ecm, |line| bytes.extend_from_slice(line)).unwrap();
@@ -111,11 +112,12 @@ fn what_is_damaged_is_no_table() {
 
 #[test]
 fn a_table_of_another_fleet_is_not_printed() {
-    let mut store = Store::<f32, AGENTS, SEGMENTS>::new();
+    let mut store = FleetStorage::<f32, AGENTS, SEGMENTS>::new();
     for agent in &scenario::float::AGENTS[..2] {
-        store.add(agent).unwrap();
+        agent.add_to(&mut store).unwrap();
     }
-    let fleet = store.motions().unwrap();
+    let mut fleet = FleetMotions::new();
+    fleet.fill(&store).unwrap();
     let ecm = Ecm::build([EcmEntry::EMPTY; REGIONS], [Piece::EMPTY; PIECES], &fleet[..1]).unwrap();
     let said = dump::table(&fleet, &ecm, |line| assert!(!line.starts_with(b"end")));
     assert!(matches!(said, Err(MismatchError::OtherFleet)), "{said:?}");

@@ -1,10 +1,9 @@
 //! What is not known is refused, and it is said why: before the table is computed, after the fleet has changed, of agents
 //! that there are not.
 
-use pcr_core::{Curve, InvalidInput, Limits, Point, Pose, Radians, TurnSide};
-use pcr_supervisor::fleet::Rejected;
+use pcr_core::{Curve, Limits, Point, Pose, Radians, TurnSide};
 use pcr_supervisor::message::{Reason, Refusal, Room, text};
-use pcr_supervisor::{Agent, Answer, Replies, Request, Service, Step, Store};
+use pcr_supervisor::{Agent, Answer, Replies, Request, Service, Step};
 use std::f32::consts::{FRAC_PI_2, PI};
 
 type Small = Service<f32, 3, 6, 4, 8>;
@@ -265,22 +264,4 @@ fn a_touch_does_not_hide_the_overlap_behind_it() {
         };
         assert!(conflict.touching == touching && (conflict.depth > 0.99) != touching, "{conflict:?}");
     }
-}
-
-#[test]
-fn a_delay_that_the_motion_does_not_allow_changes_nothing() {
-    let mut store = Store::<f32, 2, 4>::new();
-    store.add(&agent(0.0)).expect("an agent");
-    let time = |store: &Store<f32, 2, 4>| store.motions().expect("motions")[0].time();
-    let before = time(&store);
-    assert_eq!(store.delay(1, 1.0), Err(Rejected::NoSuchAgent(1)));
-    assert_eq!(store.delay(0, f32::NAN), Err(Rejected::Invalid(InvalidInput::NonFinite("delay"))));
-    assert_eq!(store.delay(0, 1e9), Err(Rejected::Invalid(InvalidInput::OutOfRange("delay"))));
-    assert_eq!(time(&store), before);
-    assert_eq!(store.delay(0, 1.0).expect("a delay"), time(&store));
-    assert_eq!(time(&store).lo, before.lo + 1.0);
-    // A list with too little room is not a shorter fleet.
-    let mut motions = store.motions().expect("motions");
-    motions.extend_from_slice(&store.motions().expect("motions")).expect("room for two");
-    assert_eq!(store.put_motions(&mut motions), Err(InvalidInput::Full("agent")));
 }

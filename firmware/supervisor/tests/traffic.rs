@@ -1,12 +1,10 @@
 //! Orders are handed out once, go on as robots do, and whatever belongs to other orders is refused.
 
-use pcr_core::{Curve, Interval, Limits, PassingState, Point, Pose, Radians};
+use pcr_core::{Curve, FleetMotions, Interval, Limits, PassingState, Point, Pose, Radians};
 use pcr_supervisor::frame::{self, Reads, Receiver, Tag};
 use pcr_supervisor::message::{Edition, Refusal, Terms};
 use pcr_supervisor::robot::Unclear;
-use pcr_supervisor::{
-    Agent, Answer, Briefing, Client, Event, Motions, Request, Robot, Service, Session, Step, Traffic,
-};
+use pcr_supervisor::{Agent, Answer, Briefing, Client, Event, Request, Robot, Service, Session, Step, Traffic};
 use std::f32::consts::FRAC_PI_2;
 
 type Table = Traffic<f32, 3, 8, 12, 16>;
@@ -76,8 +74,8 @@ fn robots_get_their_orders_and_go_by_them() {
 
     let mut briefing = Briefing::<f32, 3, 4, 4>::new(1);
     told.iter().for_each(|answer| briefing.take(answer).expect("room"));
-    let mut fleet = Motions::new();
-    briefing.put_motions(&mut fleet).expect("motions");
+    let mut fleet = FleetMotions::new();
+    fleet.fill(briefing.paths()).expect("motions");
     let mut robot = Robot::<f32, 3, 4, 8>::new();
     assert_eq!(robot.hold(&fleet), 0.0, "no orders yet");
     assert_eq!(robot.brief(&briefing, &fleet, 0.0), Ok(true));
@@ -126,8 +124,8 @@ fn a_robot_that_was_restarted_on_the_way_does_not_begin_again() {
         report(&mut service, 0, FIRST, at);
     }
     let (mut robot, briefing) = fresh(&mut service, 0);
-    let mut fleet = Motions::new();
-    briefing.put_motions(&mut fleet).expect("motions");
+    let mut fleet = FleetMotions::new();
+    fleet.fill(briefing.paths()).expect("motions");
     for at in [0.0, 2.5] {
         assert_eq!(robot.brief(&briefing, &fleet, at), Err(Unclear::Begun), "it does not know where it is");
         robot.hear(&briefing, &Answer::Go { agent: 0, edition: FIRST, to: 4.0 });
@@ -150,13 +148,13 @@ fn a_robot_that_was_restarted_on_the_way_does_not_begin_again() {
     // Sent, and not heard of since then: it may have set off.
     report(&mut service, 2, FIRST, 0.0);
     let (mut robot, briefing) = fresh(&mut service, 2);
-    let mut fleet = Motions::new();
-    briefing.put_motions(&mut fleet).expect("motions");
+    let mut fleet = FleetMotions::new();
+    fleet.fill(briefing.paths()).expect("motions");
     assert_eq!(robot.brief(&briefing, &fleet, 0.0), Err(Unclear::Begun));
     // Never sent anywhere: it stands at the start.
     let (mut robot, briefing) = fresh(&mut service, 1);
-    let mut fleet = Motions::new();
-    briefing.put_motions(&mut fleet).expect("motions");
+    let mut fleet = FleetMotions::new();
+    fleet.fill(briefing.paths()).expect("motions");
     assert_eq!((robot.brief(&briefing, &fleet, 3.0), robot.hold(&fleet)), (Ok(true), 0.0));
 }
 
@@ -215,8 +213,8 @@ fn what_a_robot_was_not_told_of_is_no_order() {
     };
     let brief = |told: &[Answer<f32>]| {
         let briefing = fleet_of(told);
-        let mut fleet = Motions::new();
-        briefing.put_motions(&mut fleet).expect("motions");
+        let mut fleet = FleetMotions::new();
+        fleet.fill(briefing.paths()).expect("motions");
         let mut robot = Robot::<f32, 3, 4, 8>::new();
         let briefed = robot.brief(&briefing, &fleet, 0.0).is_ok();
         robot.hear(&briefing, &Answer::Go { agent: 1, edition: FIRST, to: 4.0 });

@@ -200,6 +200,25 @@ where
         self.undecide()
     }
 
+    /// Begins to compute the table of a whole fleet in parts, like [`Ecm::begin_fill`].
+    pub fn begin_fill(&mut self, fleet: &[Motion<'_, S>]) {
+        self.ecm.begin_fill(fleet);
+    }
+
+    /// Continues with at most `pairs` pairs of agents, like [`Ecm::fill_pairs`]. Returns whether the table is complete; when it has
+    /// become so, no order is decided.
+    ///
+    /// # Errors
+    /// As [`Ecm::fill_pairs`].
+    pub fn fill_pairs(&mut self, fleet: &[Motion<'_, S>], pairs: usize) -> Result<bool, EcmError> {
+        let was_complete = self.ecm.is_complete().is_ok();
+        let is_complete = self.ecm.fill_pairs(fleet, pairs)?;
+        if is_complete && !was_complete {
+            self.undecide()?;
+        }
+        Ok(is_complete)
+    }
+
     /// Counts the regions and pieces that the table of a fleet takes, like [`Ecm::needed`]. One order is needed for each region. The table is
     /// then empty, and no order is decided.
     ///

@@ -4,16 +4,16 @@
 #![no_main]
 
 use pcr_board::{AGENTS, Number, entry, out};
-use pcr_core::{Ecm, EcmEntry, Piece};
+use pcr_core::{Ecm, EcmEntry, FleetMotions, FleetStorage, Piece};
 use pcr_supervisor::dump::{self, Line};
-use pcr_supervisor::{Store, scenario};
+use pcr_supervisor::scenario;
 use semihosting::process;
 use static_cell::ConstStaticCell;
 
 type Table = Ecm<Number, [EcmEntry; scenario::REGIONS], [Piece<Number>; scenario::PIECES]>;
 
-static STORE: ConstStaticCell<Store<Number, { scenario::AGENTS }, { scenario::SEGMENTS }>> =
-    ConstStaticCell::new(Store::new());
+static STORE: ConstStaticCell<FleetStorage<'static, Number, { scenario::AGENTS }, { scenario::SEGMENTS }>> =
+    ConstStaticCell::new(FleetStorage::new());
 static TABLE: ConstStaticCell<Table> =
     ConstStaticCell::new(Ecm::new([EcmEntry::EMPTY; scenario::REGIONS], [Piece::EMPTY; scenario::PIECES]));
 
@@ -25,9 +25,10 @@ fn main() -> ! {
 fn run() -> Option<()> {
     let (store, table) = (STORE.try_take()?, TABLE.try_take()?);
     for agent in &AGENTS {
-        store.add(agent).ok()?;
+        agent.add_to(store).ok()?;
     }
-    let fleet = store.motions().ok()?;
+    let mut fleet = FleetMotions::new();
+    fleet.fill(store).ok()?;
     table.fill(&fleet).ok()?;
     out::print(dump::HEADING);
     table.regions(&fleet).ok()?.for_each(|region| out::print(dump::region(&region).as_bytes()));

@@ -6,15 +6,15 @@ use core::hint::black_box;
 use pcr_board::meter::Meter;
 use pcr_board::{AGENTS, Number, entry, out};
 use pcr_core::scalar::{Angle, Wide};
-use pcr_core::{Ecm, EcmEntry, Piece, Scalar, earliest_start, first_conflict};
+use pcr_core::{Ecm, EcmEntry, FleetMotions, FleetStorage, Piece, Scalar, earliest_start, first_conflict};
 use pcr_supervisor::dump::Line;
 use pcr_supervisor::message::ConflictRecord;
-use pcr_supervisor::{Store, scenario};
+use pcr_supervisor::scenario;
 use semihosting::process;
 use static_cell::ConstStaticCell;
 
-static STORE: ConstStaticCell<Store<Number, { scenario::AGENTS }, { scenario::SEGMENTS }>> =
-    ConstStaticCell::new(Store::new());
+static STORE: ConstStaticCell<FleetStorage<'static, Number, { scenario::AGENTS }, { scenario::SEGMENTS }>> =
+    ConstStaticCell::new(FleetStorage::new());
 static TABLE: ConstStaticCell<Ecm<Number, [EcmEntry; scenario::REGIONS], [Piece<Number>; scenario::PIECES]>> =
     ConstStaticCell::new(Ecm::new([EcmEntry::EMPTY; scenario::REGIONS], [Piece::EMPTY; scenario::PIECES]));
 
@@ -38,11 +38,12 @@ fn run() -> Option<()> {
     let (store, table) = (STORE.try_take()?, TABLE.try_take()?);
     let mut constructors = 0_u32;
     for agent in &AGENTS {
-        let (count, added) = meter.count(|| store.add(black_box(agent)));
+        let (count, added) = meter.count(|| black_box(agent).add_to(store));
         added.ok()?;
         constructors = constructors.saturating_add(count);
     }
-    let fleet = store.motions().ok()?;
+    let mut fleet = FleetMotions::new();
+    fleet.fill(store).ok()?;
     let (mut build, mut worst) = (0_u32, 0_u32);
     for agent in 0..fleet.len() {
         let motions = fleet.get(..=agent)?;

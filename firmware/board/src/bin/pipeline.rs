@@ -5,18 +5,18 @@
 
 use core::hint::black_box;
 use pcr_board::{AGENTS, Number, entry};
-use pcr_core::{CapacityError, Ecm, EcmEntry, Interval, InvalidInput, Motion, Piece};
+use pcr_core::{CapacityError, Ecm, EcmEntry, FleetMotions, FleetStorage, Interval, InvalidInput, Motion, Piece};
 use pcr_supervisor::scenario::{self, PIECES, REGIONS};
-use pcr_supervisor::{Agent, Motions, Step, Store};
+use pcr_supervisor::{Agent, Step};
 use semihosting::process;
 use static_cell::ConstStaticCell;
 
 type Table = Ecm<Number, [EcmEntry; REGIONS], [Piece<Number>; PIECES]>;
-type Parts = Store<Number, { scenario::AGENTS }, { scenario::SEGMENTS }>;
-type Fleet<'a> = Motions<'a, Number, { scenario::AGENTS }>;
+type Storage = FleetStorage<'static, Number, { scenario::AGENTS }, { scenario::SEGMENTS }>;
+type Fleet<'a> = FleetMotions<'a, Number, { scenario::AGENTS }>;
 type BuiltIn = [Agent<Number, &'static [Step<Number>]>];
 
-static STORE: ConstStaticCell<Parts> = ConstStaticCell::new(Store::new());
+static STORE: ConstStaticCell<Storage> = ConstStaticCell::new(Storage::new());
 static FLEET: ConstStaticCell<Fleet<'static>> = ConstStaticCell::new(Fleet::new());
 static TABLE: ConstStaticCell<Table> =
     ConstStaticCell::new(Ecm::new([EcmEntry::EMPTY; REGIONS], [Piece::EMPTY; PIECES]));
@@ -35,16 +35,16 @@ fn main() -> ! {
 
 /// The job whose stack counts.
 #[inline(never)]
-fn job<'a>(store: &'a mut Parts, fleet: &mut Fleet<'a>, table: &mut Table, agents: &BuiltIn) -> Option<usize> {
+fn job<'a>(store: &'a mut Storage, fleet: &mut Fleet<'a>, table: &mut Table, agents: &BuiltIn) -> Option<usize> {
     construct(store, agents).ok()?;
-    store.put_motions(fleet).ok()?;
+    fleet.fill(store).ok()?;
     build(table, fleet).ok()?;
     Some(ask(table, fleet))
 }
 
 #[inline(never)]
-fn construct(store: &mut Parts, agents: &BuiltIn) -> Result<(), InvalidInput> {
-    agents.iter().try_for_each(|agent| store.add(agent).map(|_| ()))
+fn construct(store: &mut Storage, agents: &BuiltIn) -> Result<(), InvalidInput> {
+    agents.iter().try_for_each(|agent| agent.add_to(store).map(|_| ()))
 }
 
 #[inline(never)]

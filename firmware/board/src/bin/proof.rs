@@ -8,18 +8,18 @@
 
 use core::fmt::{Display, Write};
 use core::hint::black_box as any;
-use core::ops::{Add, Neg, Sub};
+use core::ops::{Add, Deref, DerefMut, Neg, Sub};
 use pcr_board::{Number, entry};
 use pcr_core::scalar::{AccelerationRamp, Angle, AngleSector, Unit, Wide};
 use pcr_core::{
     Aabb, AdmissionError, BrakingModel, BroadPhase, CapacityError, CheckState, CheckTolerances, Conflict, Conflicts,
-    Constraint, Contacts, Corner, Crossing, Curve, Direction, Ecm, EcmEntry, EcmError, Encounter, Gaps, Interval,
-    InvalidInput, Limits, MismatchError, Motion, MovementAuthority, Outline, OutlineRef, PassingState, Path,
-    PathProposal, PathRef, Phase, Piece, PieceRef, PieceType, PlanError, Point, Pose, PrecedenceDecision,
-    PrecedenceTable, Profile, ProfileRef, Progress, RegionPrecedence, RegionRef, Scalar, SearchNode, Segment,
-    SpeedPlan, SpeedPlanError, SpeedPlanLimits, TurnSide, Union, Vector, crossings, earliest_departure, earliest_start,
-    excess, first_conflict, first_overlap, gaps, least_duration, overlaps, plan_delays, plan_speed, plan_speed_below,
-    plan_speeds, safe_intervals, safe_lengths, union,
+    Constraint, Contacts, Corner, Crossing, Curve, Direction, Ecm, EcmEntry, EcmError, Encounter, FleetMotions,
+    FleetStorage, FleetStorageError, Gaps, Interval, InvalidInput, Limits, MismatchError, Motion, MovementAuthority,
+    NewAgent, Outline, OutlineRef, PassingState, Path, PathProposal, PathRef, Phase, Piece, PieceRef, PieceType,
+    PlanError, Point, Pose, PrecedenceDecision, PrecedenceTable, Profile, ProfileRef, Progress, RegionPrecedence,
+    RegionRef, Scalar, SearchNode, Segment, SpeedPlan, SpeedPlanError, SpeedPlanLimits, StagedAgent, TurnSide, Union,
+    Vector, crossings, earliest_departure, earliest_start, excess, first_conflict, first_overlap, gaps, least_duration,
+    overlaps, plan_delays, plan_speed, plan_speed_below, plan_speeds, safe_intervals, safe_lengths, union,
 };
 
 #[entry]
@@ -29,6 +29,7 @@ fn main() -> ! {
     plane::<Number>();
     let _ = constructors::<Number>();
     let _ = outlines::<Number>();
+    let _ = storage::<Number>();
     motions::<Number>(any(&[]));
     queries::<Number>(any(&[]));
     table::<Number>(any(&mut []), any(&[]));
@@ -210,6 +211,46 @@ fn outlines<S: Scalar>() -> Result<(), InvalidInput> {
 }
 
 #[inline(never)]
+fn storage<S: Scalar>() -> Result<(), FleetStorageError> {
+    type New<'f, S> = NewAgent<'f, 'static, S, 2, 6, 3>;
+    let mut storage = any(FleetStorage::<'static, S, 2, 6>::new());
+    any((FleetStorage::len(&storage), FleetStorage::is_empty(&storage)));
+    let pose: Pose<S> = Pose { position: point(), heading: angle::<S>() };
+    let path: New<'_, S> = FleetStorage::start_at(&mut storage, any(pose))?;
+    let path = NewAgent::segment(path, any(Curve::Line), number())?;
+    let path = NewAgent::line(path, number())?;
+    let path = NewAgent::arc(path, number(), any(TurnSide::Left), number())?;
+    let path = NewAgent::arc_by(path, number(), number())?;
+    let path = NewAgent::pivot(path, number(), number())?;
+    let path = NewAgent::reverse(NewAgent::facing(path, angle::<S>())?)?;
+    let path = NewAgent::turn(path, angle::<S>())?;
+    let limits = Limits { speed: number(), acceleration: number() };
+    let path = NewAgent::profile(NewAgent::rest_to_rest(path, limits)?, Profile::<S, 3>::standing().as_profile())?;
+    let staged = NewAgent::disc(path, number(), number())?;
+    any((StagedAgent::storage(&staged).len(), StagedAgent::motion(&staged).is_ok()));
+    any(StagedAgent::add(staged).is_ok());
+    let outline: OutlineRef<'static, S> = OutlineRef::new(any(&[]), number())?;
+    let staged = NewAgent::outline(FleetStorage::start_at(&mut storage, any(pose))?, outline, number())?;
+    any(StagedAgent::replace(staged, any(0)).is_ok());
+    any(FleetStorage::motion(&storage, any(0)).is_ok());
+    any(FleetStorage::delay(&mut storage, any(0), number()).is_ok());
+    any(FleetStorage::remove(&mut storage, any(0)).is_ok());
+    let mut fleet = any(FleetMotions::<'_, S, 2>::new());
+    any(FleetMotions::fill(&mut fleet, &storage).is_ok());
+    any((
+        <FleetMotions<'_, S, 2> as Deref>::deref(&fleet).len(),
+        <FleetMotions<'_, S, 2> as DerefMut>::deref_mut(&mut fleet).len(),
+    ));
+    FleetMotions::clear(&mut fleet);
+    any(<FleetMotions<'_, S, 2> as Default>::default());
+    drop(fleet);
+    FleetStorage::clear(&mut storage);
+    any(<FleetStorage<'static, S, 2, 6> as Default>::default());
+    any(<FleetStorageError as From<InvalidInput>>::from(any(InvalidInput::NotConvex)));
+    Ok(())
+}
+
+#[inline(never)]
 fn motions<S: Scalar>(fleet: &[Motion<'_, S>]) {
     for motion in fleet {
         let path: PathRef<'_, S> = Motion::path(motion);
@@ -287,6 +328,8 @@ fn table<S: Scalar>(fleet: &mut [Motion<'_, S>], agents: &[usize]) {
         any(Ecm::erase(&mut ecm, fleet, agent).is_ok());
         any(Ecm::fill_row(&mut ecm, fleet, agent).is_ok());
         any(Ecm::fill(&mut ecm, fleet).is_ok());
+        Ecm::begin_fill(&mut ecm, fleet);
+        any(Ecm::fill_pairs(&mut ecm, fleet, any(1)).is_ok());
         let mut copy = any(Ecm::<S, _, _>::new([EcmEntry::EMPTY; 4], [Piece::EMPTY; 8]));
         any(Ecm::copy_from(&mut copy, &ecm).is_ok());
         any(Ecm::needed(&mut copy, fleet).is_ok());
@@ -413,6 +456,8 @@ fn orders<S: Scalar>(fleet: &mut [Motion<'_, S>], progress: &mut [Progress<S>], 
     any(PrecedenceTable::remove(&mut orders, fleet, agent).is_ok());
     any(PrecedenceTable::erase(&mut orders, fleet, agent).is_ok());
     any(PrecedenceTable::fill(&mut orders, fleet).is_ok());
+    PrecedenceTable::begin_fill(&mut orders, fleet);
+    any(PrecedenceTable::fill_pairs(&mut orders, fleet, any(1)).is_ok());
     let mut copy = any(PrecedenceTable::new([EcmEntry::EMPTY; 4], [Piece::EMPTY; 8], [RegionPrecedence::EMPTY; 4]));
     any(PrecedenceTable::copy_from(&mut copy, &orders).is_ok());
     any(PrecedenceTable::needed(&mut copy, fleet).is_ok());
@@ -459,6 +504,7 @@ fn messages<S: Scalar>() {
     shown::<CapacityError>(any(CapacityError::Pair([0, 0])));
     shown::<MismatchError>(any(MismatchError::OtherFleet));
     shown::<EcmError>(any(<EcmError as From<CapacityError>>::from(any(CapacityError::Agents))));
+    shown::<FleetStorageError>(any(FleetStorageError::NoSuchAgent(0)));
     shown::<PlanError>(any(<PlanError as From<MismatchError>>::from(any(MismatchError::NoSuchAgent(0)))));
     shown::<SpeedPlanError<S>>(any(<SpeedPlanError<S> as From<InvalidInput>>::from(any(
         InvalidInput::SweepOverOneTurn,

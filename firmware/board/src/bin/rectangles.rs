@@ -6,19 +6,18 @@
 use core::hint::black_box;
 use pcr_board::meter::Meter;
 use pcr_board::{AGENTS, Number, entry, out};
-use pcr_core::{Ecm, EcmEntry, InvalidInput, Motion, Outline, Piece, Scalar};
+use pcr_core::{Ecm, EcmEntry, FleetMotions, FleetStorage, InvalidInput, Motion, Outline, Piece, Scalar};
 use pcr_supervisor::dump::{self, Line};
 use pcr_supervisor::scenario::{self, PIECES, REGIONS};
-use pcr_supervisor::{Motions, Store};
 use semihosting::process;
 use static_cell::ConstStaticCell;
 
 type Table = Ecm<Number, [EcmEntry; REGIONS], [Piece<Number>; 2 * PIECES]>;
-type Parts = Store<Number, { scenario::AGENTS }, { scenario::SEGMENTS }>;
+type Storage = FleetStorage<'static, Number, { scenario::AGENTS }, { scenario::SEGMENTS }>;
 type Outlines = [Option<Outline<Number, 4>>; scenario::AGENTS];
-type Fleet = Motions<'static, Number, { scenario::AGENTS }>;
+type Fleet = FleetMotions<'static, Number, { scenario::AGENTS }>;
 
-static STORE: ConstStaticCell<Parts> = ConstStaticCell::new(Store::new());
+static STORE: ConstStaticCell<Storage> = ConstStaticCell::new(Storage::new());
 static OUTLINES: ConstStaticCell<Outlines> = ConstStaticCell::new([const { None }; scenario::AGENTS]);
 static FLEET: ConstStaticCell<Fleet> = ConstStaticCell::new(Fleet::new());
 static TABLE: ConstStaticCell<Table> =
@@ -49,12 +48,12 @@ fn run() -> Option<()> {
 
 #[inline(never)]
 fn construct(
-    store: &'static mut Parts,
+    store: &'static mut Storage,
     outlines: &'static mut Outlines,
     fleet: &mut Fleet,
 ) -> Result<(), InvalidInput> {
-    AGENTS.iter().try_for_each(|agent| store.add(agent).map(|_| ()))?;
-    store.put_motions(fleet)?;
+    AGENTS.iter().try_for_each(|agent| agent.add_to(store).map(|_| ()))?;
+    fleet.fill(store)?;
     for (motion, outline) in fleet.iter_mut().zip(outlines) {
         let (length, width) = (motion.radius(), motion.radius().half());
         let rectangle = outline.insert(Outline::rectangle(length, length, width, width, Number::ZERO)?);

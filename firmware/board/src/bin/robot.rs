@@ -9,10 +9,10 @@ use core::hint::black_box;
 use pcr_board::meter::Meter;
 use pcr_board::uart::Uart;
 use pcr_board::{Number, entry, out};
-use pcr_core::{Interval, Motion, Scalar};
+use pcr_core::{FleetMotions, Interval, Motion, Scalar};
 use pcr_supervisor::dump::Line;
 use pcr_supervisor::scenario::crowd::{OWN, PIECES, REGIONS, ROBOTS, SEGMENTS};
-use pcr_supervisor::{Answer, Briefing, Client, Event, Motions, Request, Robot};
+use pcr_supervisor::{Answer, Briefing, Client, Event, Request, Robot};
 use semihosting::process;
 use static_cell::ConstStaticCell;
 
@@ -67,8 +67,8 @@ fn work(link: &mut Link, told: &mut Told, keeper: &mut Keeper) -> Option<()> {
     let mut clear = true;
     let last = link.ask(&Request::Orders { agent: OWN }, |answer| clear &= told.take(answer).is_ok())?;
     let Answer::Orders { edition, .. } = last else { return None };
-    let mut fleet = Motions::new();
-    told.put_motions(&mut fleet).ok().filter(|()| clear)?;
+    let mut fleet = FleetMotions::new();
+    fleet.fill(told.paths()).ok().filter(|()| clear)?;
     // It stands at the start. Restarted on the way it would be refused, as it cannot find its place there.
     keeper.brief(told, &fleet, Number::ZERO).ok()?;
     let end = fleet.get(keeper.own())?.path().length();

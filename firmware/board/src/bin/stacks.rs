@@ -6,12 +6,11 @@
 use core::hint::black_box;
 use pcr_board::{AGENTS as BUILT_IN, Number, entry, out};
 use pcr_core::{
-    CheckState, CheckTolerances, EcmEntry, Encounter, Interval, Motion, PassingState, PathProposal, Piece,
-    PrecedenceTable, Progress, RegionPrecedence, Scalar, earliest_departure, earliest_start, first_conflict,
-    first_overlap, least_duration, safe_intervals, safe_lengths,
+    CheckState, CheckTolerances, EcmEntry, Encounter, FleetMotions, FleetStorage, Interval, Motion, PassingState,
+    PathProposal, Piece, PrecedenceTable, Progress, RegionPrecedence, Scalar, earliest_departure, earliest_start,
+    first_conflict, first_overlap, least_duration, safe_intervals, safe_lengths,
 };
 use pcr_supervisor::dump::Line;
-use pcr_supervisor::{Motions, Store};
 use semihosting::process;
 use static_cell::ConstStaticCell;
 
@@ -22,10 +21,10 @@ const REGIONS: usize = 44;
 const PIECES: usize = 60;
 const ORDERS: usize = REGIONS + 18;
 type Table = PrecedenceTable<Number, [EcmEntry; REGIONS], [Piece<Number>; PIECES], [RegionPrecedence<Number>; ORDERS]>;
-type Parts = Store<Number, AGENTS, SEGMENTS>;
-type Fleet<'a> = Motions<'a, Number, AGENTS>;
+type Storage = FleetStorage<'static, Number, AGENTS, SEGMENTS>;
+type Fleet<'a> = FleetMotions<'a, Number, AGENTS>;
 
-static STORE: ConstStaticCell<Parts> = ConstStaticCell::new(Store::new());
+static STORE: ConstStaticCell<Storage> = ConstStaticCell::new(Storage::new());
 static FLEET: ConstStaticCell<Fleet<'static>> = ConstStaticCell::new(Fleet::new());
 static TABLE: ConstStaticCell<Table> = ConstStaticCell::new(PrecedenceTable::new(
     [EcmEntry::EMPTY; REGIONS],
@@ -80,10 +79,10 @@ fn measure(name: &[u8], call: &mut dyn FnMut() -> bool) -> Option<()> {
 fn run() -> Option<()> {
     let (store, fleet, table) = (STORE.try_take()?, FLEET.try_take()?, TABLE.try_take()?);
     measure(b"the constructors", &mut || {
-        BUILT_IN.iter().take(AGENTS).all(|agent| store.add(black_box(agent)).is_ok())
+        BUILT_IN.iter().take(AGENTS).all(|agent| black_box(agent).add_to(store).is_ok())
     })?;
-    let store: &'static Parts = store;
-    measure(b"the motions", &mut || store.put_motions(fleet).is_ok())?;
+    let store: &'static Storage = store;
+    measure(b"the motions", &mut || fleet.fill(store).is_ok())?;
     measure(b"Ecm::fill", &mut || table.fill(fleet).is_ok())?;
     queries(fleet, table)?;
     orders(fleet, table)

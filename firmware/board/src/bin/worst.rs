@@ -7,9 +7,9 @@ use core::hint::black_box;
 use pcr_board::meter::Meter;
 use pcr_board::{AGENTS, Number, entry, out};
 use pcr_core::scalar::Angle;
-use pcr_core::{Curve, Ecm, EcmEntry, Limits, Piece, Point, Pose, Scalar, TurnSide};
+use pcr_core::{Curve, Ecm, EcmEntry, FleetMotions, FleetStorage, Limits, Piece, Point, Pose, Scalar, TurnSide};
 use pcr_supervisor::dump::Line;
-use pcr_supervisor::{Agent, Step, Store, scenario};
+use pcr_supervisor::{Agent, Step, scenario};
 use semihosting::process;
 use static_cell::ConstStaticCell;
 
@@ -17,11 +17,11 @@ use static_cell::ConstStaticCell;
 const SIZES: [(u32, u32); 4] = [(1, 4096), (2, 1024), (4, 256), (8, 64)];
 const ONE: Number = <Number as pcr_supervisor::Number>::ONE;
 
-type Fleet = Store<Number, { scenario::AGENTS }, { scenario::SEGMENTS }>;
+type Fleet = FleetStorage<'static, Number, { scenario::AGENTS }, { scenario::SEGMENTS }>;
 type Table = Ecm<Number, [EcmEntry; scenario::REGIONS], [Piece<Number>; scenario::PIECES]>;
 
 // The pairs of paths, and then the 12 agents.
-static STORE: ConstStaticCell<Fleet> = ConstStaticCell::new(Store::new());
+static STORE: ConstStaticCell<Fleet> = ConstStaticCell::new(FleetStorage::new());
 static TABLE: ConstStaticCell<Table> =
     ConstStaticCell::new(Ecm::new([EcmEntry::EMPTY; scenario::REGIONS], [Piece::EMPTY; scenario::PIECES]));
 
@@ -48,7 +48,8 @@ fn run() -> Option<bool> {
             for _ in 0..2 {
                 random.add(store, size as usize)?;
             }
-            let motions = store.motions().ok()?;
+            let mut motions = FleetMotions::new();
+            motions.fill(store).ok()?;
             table.insert(motions.get(..1)?, 0).ok()?;
             let (count, inserted) = meter.count(|| table.insert(black_box(&motions), 1));
             inserted.ok()?;
@@ -84,8 +85,9 @@ fn percent(part: u32, whole: u32) -> Option<u32> {
 fn twelve(meter: &Meter, store: &mut Fleet, table: &mut Table) -> Option<(u32, u32)> {
     store.clear();
     table.clear();
-    AGENTS.iter().try_for_each(|agent| store.add(agent).map(drop)).ok()?;
-    let fleet = store.motions().ok()?;
+    AGENTS.iter().try_for_each(|agent| agent.add_to(store).map(drop)).ok()?;
+    let mut fleet = FleetMotions::new();
+    fleet.fill(store).ok()?;
     let (mut took, mut pairs, mut before) = (0_u32, 0_u32, 0_u32);
     for (agent, built_in) in AGENTS.iter().enumerate() {
         let motions = fleet.get(..=agent)?;

@@ -6,10 +6,10 @@ use super::rounded::Rounded;
 use super::tally::Tally;
 use super::{PIECES, REGIONS, ROBOTS, SEGMENTS, STEP};
 use pcr_core::scalar::Angle;
-use pcr_core::{BrakingModel, Curve, Interval, PassingState, TurnSide};
+use pcr_core::{BrakingModel, Curve, FleetMotions, Interval, PassingState, TurnSide};
 use pcr_supervisor::message::{Edition, Refusal};
 use pcr_supervisor::robot::Unclear;
-use pcr_supervisor::{Agent, Answer, Briefing, Client, Event, Motions, Number, Request, Robot};
+use pcr_supervisor::{Agent, Answer, Briefing, Client, Event, Number, Request, Robot};
 use std::error::Error;
 
 /// Control steps after which no frame from before a restart can still be on the line: 9 s.
@@ -230,8 +230,8 @@ impl<S: Rounded> Driver<S> {
 /// The paths that a robot knows.
 pub(crate) fn motions<S: Number, const A: usize, const N: usize, const R: usize>(
     told: &Briefing<S, A, N, R>,
-) -> Result<Motions<'_, S, A>, Box<dyn Error>> {
-    let mut fleet = Motions::new();
-    told.put_motions(&mut fleet).map_err(|invalid| format!("{invalid:?}"))?;
+) -> Result<FleetMotions<'_, S, A>, Box<dyn Error>> {
+    let mut fleet = FleetMotions::new();
+    fleet.fill(told.paths()).map_err(|invalid| format!("{invalid:?}"))?;
     Ok(fleet)
 }

@@ -1,9 +1,9 @@
 //! Reasons why a request was not executed.
 
 use super::{Edition, short};
-use crate::fleet::Rejected;
 use crate::frame::Damage;
 use heapless::Vec;
+use pcr_core::FleetStorageError;
 use pcr_core::{AdmissionError, CapacityError, EcmError, InvalidInput, MismatchError};
 use serde::{Deserialize, Serialize};
 
@@ -132,10 +132,10 @@ impl Refusal {
     }
 
     /// The refusal of a change of an agent.
-    pub fn change(agent: usize, rejected: Rejected) -> Self {
+    pub fn change(agent: usize, rejected: FleetStorageError) -> Self {
         match rejected {
-            Rejected::NoSuchAgent(agent) => Self::NoSuchAgent { agent: short(agent) },
-            Rejected::Invalid(invalid) => Self::agent(agent, invalid),
+            FleetStorageError::NoSuchAgent(agent) => Self::NoSuchAgent { agent: short(agent) },
+            FleetStorageError::Invalid(invalid) => Self::agent(agent, invalid),
         }
     }
 }

@@ -1,0 +1,628 @@
+//! Storage of fixed capacity for the paths and profiles of a fleet, meant to be a `static`, so that nothing large is moved over the stack.
+
+use crate::error::InvalidInput;
+use crate::geometry::{Direction, Interval, Pose};
+use crate::motion::Motion;
+use crate::outline::OutlineRef;
+use crate::path::{PathRef, SegmentChain, swept};
+use crate::profile::{Limits, Phase, Profile, ProfileRef};
+use crate::scalar::Scalar;
+use crate::segment::{Curve, Segment, TurnSide};
+use core::fmt;
+use core::ops::{Deref, DerefMut};
+use heapless::Vec;
+
+/// The paths and profiles of up to `A` agents, with `N` segments in total and at most `F` phases each. Segments are built where they are
+/// stored. A [`FleetMotions`] has the motions that borrow from it.
+///
+/// Outlines are borrowed for `'o`; they may be in a `static`, or built before the storage.
+///
+/// ```
+/// use pcr_core::{Ecm, EcmEntry, FleetMotions, FleetStorage, Limits, Piece, Point, Pose, Radians};
+/// let east = Pose { position: Point::new(-2.0, 0.0), heading: Radians(0.0) };
+/// let north = Pose { position: Point::new(0.0, -2.0), heading: Radians(core::f64::consts::FRAC_PI_2) };
+/// let limits = Limits { speed: 1.0, acceleration: 1.0 };
+///
+/// let mut storage = FleetStorage::<f64, 2, 8>::new();
+/// storage.start_at(east)?.line(4.0)?.rest_to_rest(limits)?.disc(0.25, 0.0)?.add()?;
+/// storage.start_at(north)?.line(4.0)?.rest_to_rest(limits)?.disc(0.25, 0.0)?.add()?;
+///
+/// let mut fleet = FleetMotions::new();
+/// fleet.fill(&storage)?;
+/// let ecm = Ecm::build([EcmEntry::EMPTY; 4], [Piece::EMPTY; 4], &fleet)?;
+/// assert_eq!(ecm.len(), 1);
+/// # Ok::<(), Box<dyn core::error::Error>>(())
+/// ```
+///
+/// On a microcontroller, storage, motions and table are statics, here in cells of the crate `static_cell`:
+///
+/// ```ignore
+/// static STORAGE: ConstStaticCell<FleetStorage<f32, 12, 36>> = ConstStaticCell::new(FleetStorage::new());
+/// static FLEET: ConstStaticCell<FleetMotions<f32, 12>> = ConstStaticCell::new(FleetMotions::new());
+/// static TABLE: ConstStaticCell<Ecm<f32, [EcmEntry; 80], [Piece<f32>; 110]>> =
+///     ConstStaticCell::new(Ecm::new([EcmEntry::EMPTY; 80], [Piece::EMPTY; 110]));
+/// ```
+///
+/// The compiler refuses more segments than an agent can number:
+/// ```compile_fail,E0080
+/// let _ = pcr_core::FleetStorage::<f64, 2, 65536>::new();
+/// ```
+#[derive(Clone, Debug)]
+pub struct FleetStorage<'o, S: Scalar, const A: usize, const N: usize, const F: usize = 3> {
+    agents: Vec<StoredAgent<'o, S, F>, A>,
+    /// Those of the agents, one agent after the other, and then those of an agent that is being built.
+    segments: Vec<Segment<S>, N>,
+    /// The agent that is being built. It is here because a [`NewAgent`] is moved at every call.
+    next: Option<StoredAgent<'o, S, F>>,
+}
+
+/// An agent whose segments are stored.
+#[derive(Clone, Debug)]
+struct StoredAgent<'o, S: Scalar, const F: usize> {
+    /// Index of its first segment, and their number.
+    begin: u16,
+    segments: u16,
+    phases: Vec<Phase<S>, F>,
+    outline: OutlineRef<'o, S>,
+    start: S,
+}
+
+/// Why an agent in the storage of a fleet was not changed.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+pub enum FleetStorageError {
+    /// The storage has no agent with this index.
+    NoSuchAgent(usize),
+    /// The motion of the agent would be invalid.
+    Invalid(InvalidInput),
+}
+
+impl From<InvalidInput> for FleetStorageError {
+    fn from(invalid: InvalidInput) -> Self {
+        Self::Invalid(invalid)
+    }
+}
+
+impl fmt::Display for FleetStorageError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::NoSuchAgent(agent) => write!(f, "the fleet has no agent {agent}"),
+            Self::Invalid(invalid) => invalid.fmt(f),
+        }
+    }
+}
+
+impl core::error::Error for FleetStorageError {}
+
+impl<S: Scalar, const A: usize, const N: usize, const F: usize> Default for FleetStorage<'_, S, A, N, F> {
+    fn default() -> Self {
+        Self::new()
+    }
+}
+
+impl<'o, S: Scalar, const A: usize, const N: usize, const F: usize> FleetStorage<'o, S, A, N, F> {
+    /// Returns a storage without agents. It is all zeros, so a `static` takes no flash for it.
+    pub const fn new() -> Self {
+        const { assert!(N <= u16::MAX as usize, "a fleet has at most 65535 segments") };
+        Self { agents: Vec::new(), segments: Vec::new(), next: None }
+    }
+
+    /// Removes all agents.
+    pub fn clear(&mut self) {
+        self.agents.clear();
+        self.segments.clear();
+        self.next = None;
+    }
+
+    /// Number of agents.
+    pub fn len(&self) -> usize {
+        self.agents.len()
+    }
+
+    /// Whether there are no agents.
+    pub fn is_empty(&self) -> bool {
+        self.agents.is_empty()
+    }
+
+    /// Begins an agent whose path starts at `pose`. It belongs to the fleet once [`StagedAgent::add`] or [`StagedAgent::replace`] is called;
+    /// until then the fleet does not change, and if neither is, it is forgotten.
+    ///
+    /// # Errors
+    /// [`InvalidInput::NonFinite`], [`InvalidInput::OutOfRange`]; [`InvalidInput::Full`] if there is no room for a segment.
+    pub fn start_at(&mut self, pose: Pose<S>) -> Result<NewAgent<'_, 'o, S, A, N, F>, InvalidInput> {
+        let begin = self.used();
+        // Those of an agent that was forgotten.
+        self.segments.truncate(usize::from(begin));
+        self.segments.push(Segment::standing(pose)?).map_err(|_| InvalidInput::Full("segment"))?;
+        let outline = OutlineRef::disc(S::ZERO);
+        self.next = Some(StoredAgent { begin, segments: 0, phases: Vec::new(), outline, start: S::ZERO });
+        Ok(NewAgent { storage: self, body: None })
+    }
+
+    /// Returns the motion of an agent.
+    ///
+    /// # Errors
+    /// [`FleetStorageError::NoSuchAgent`]. A motion itself cannot be refused, because it was accepted when its agent was added.
+    pub fn motion(&self, agent: usize) -> Result<Motion<'_, S>, FleetStorageError> {
+        let stored = self.agents.get(agent).ok_or(FleetStorageError::NoSuchAgent(agent))?;
+        Ok(stored.motion(&self.segments)?)
+    }
+
+    /// Delays the start of an agent by `delay` \[s\], which may be negative, and returns the interval of its new motion \[s\].
+    ///
+    /// # Errors
+    /// [`FleetStorageError::NoSuchAgent`], and the errors of [`Motion::delayed`]; the agent is then unchanged.
+    pub fn delay(&mut self, agent: usize, delay: S) -> Result<Interval<S>, FleetStorageError> {
+        let time = self.motion(agent)?.delayed(delay)?.time();
+        if let Some(stored) = self.agents.get_mut(agent) {
+            stored.start = time.lo;
+        }
+        Ok(time)
+    }
+
+    /// Removes an agent; the index of every agent behind it decreases by one. O(agents + segments).
+    ///
+    /// # Errors
+    /// [`FleetStorageError::NoSuchAgent`].
+    pub fn remove(&mut self, agent: usize) -> Result<(), FleetStorageError> {
+        let gone = self.agents.get(agent).ok_or(FleetStorageError::NoSuchAgent(agent))?;
+        let (begin, segments) = (gone.begin, gone.segments);
+        for place in agent..self.agents.len() {
+            if let Some([first, second]) = self.agents.get_mut(place..).and_then(<[_]>::first_chunk_mut) {
+                core::mem::swap(first, second);
+            }
+        }
+        self.agents.pop();
+        self.close(begin, segments);
+        Ok(())
+    }
+
+    /// The agent that is being built. There is one wherever this is called.
+    fn next(&mut self) -> Result<&mut StoredAgent<'o, S, F>, InvalidInput> {
+        self.next.as_mut().ok_or(InvalidInput::Disconnected("path"))
+    }
+
+    /// Number of segments of the agents.
+    fn used(&self) -> u16 {
+        self.agents.iter().fold(0, |sum, agent| agent.segments.wrapping_add(sum))
+    }
+
+    /// Closes the gap in the segments of an agent that is gone.
+    fn close(&mut self, begin: u16, segments: u16) {
+        let count = usize::from(segments);
+        for place in usize::from(begin)..self.segments.len() {
+            let Some(&next) = self.segments.get(place.saturating_add(count)) else { break };
+            if let Some(segment) = self.segments.get_mut(place) {
+                *segment = next;
+            }
+        }
+        self.segments.truncate(self.segments.len().saturating_sub(count));
+        for agent in &mut self.agents {
+            if agent.begin > begin {
+                agent.begin = agent.begin.wrapping_sub(segments);
+            }
+        }
+    }
+}
+
+impl<S: Scalar, const F: usize> StoredAgent<'_, S, F> {
+    fn motion<'a>(&'a self, segments: &'a [Segment<S>]) -> Result<Motion<'a, S>, InvalidInput> {
+        let [begin, count] = [self.begin, self.segments].map(usize::from);
+        let own = segments.get(begin..begin.saturating_add(count)).unwrap_or_default();
+        Motion::of(PathRef::of(own), ProfileRef::of(&self.phases), self.outline, self.start)
+    }
+}
+
+/// An agent that is being built in a [`FleetStorage`]: first its path, then its profile, then its body.
+#[derive(Debug)]
+#[must_use = "an agent belongs to the fleet once it has a body and is added"]
+pub struct NewAgent<'f, 'o, S: Scalar, const A: usize, const N: usize, const F: usize> {
+    storage: &'f mut FleetStorage<'o, S, A, N, F>,
+    body: Option<Direction<S>>,
+}
+
+impl<'f, 'o, S: Scalar, const A: usize, const N: usize, const F: usize> NewAgent<'f, 'o, S, A, N, F> {
+    /// Appends a segment of this shape and length \[m\], for paths that are stored as lists of both.
+    ///
+    /// # Errors
+    /// As [`Path::line`](crate::Path::line), [`Path::arc`](crate::Path::arc) and [`Path::pivot`](crate::Path::pivot).
+    pub fn segment(mut self, curve: Curve<S>, length: S) -> Result<Self, InvalidInput> {
+        match curve {
+            Curve::Line => self.append_line(length),
+            Curve::Arc { radius, turn } => self.append_arc(radius, turn, length),
+            Curve::Pivot { lever, turn } => self.append_pivot(lever, turn, length),
+        }?;
+        Ok(self)
+    }
+
+    /// Appends a line of this length \[m\].
+    ///
+    /// # Errors
+    /// As [`Path::line`](crate::Path::line).
+    pub fn line(mut self, length: S) -> Result<Self, InvalidInput> {
+        self.append_line(length)?;
+        Ok(self)
+    }
+
+    /// Appends an arc of this radius \[m\] and length \[m\].
+    ///
+    /// # Errors
+    /// As [`Path::arc`](crate::Path::arc).
+    pub fn arc(mut self, radius: S, turn: TurnSide, length: S) -> Result<Self, InvalidInput> {
+        self.append_arc(radius, turn, length)?;
+        Ok(self)
+    }
+
+    /// Appends an arc of this radius \[m\] that turns by `sweep` \[rad\], to the left if positive.
+    ///
+    /// # Errors
+    /// As [`Path::arc_by`](crate::Path::arc_by).
+    pub fn arc_by(mut self, radius: S, sweep: S) -> Result<Self, InvalidInput> {
+        let (turn, length) = swept(radius, sweep)?;
+        self.append_arc(radius, turn, length)?;
+        Ok(self)
+    }
+
+    /// Appends a turn in place by `sweep` \[rad\], to the left if positive, with this lever \[m\].
+    ///
+    /// # Errors
+    /// As [`Path::pivot`](crate::Path::pivot).
+    pub fn pivot(mut self, lever: S, sweep: S) -> Result<Self, InvalidInput> {
+        let (turn, length) = swept(lever, sweep)?;
+        self.append_pivot(lever, turn, length)?;
+        Ok(self)
+    }
+
+    /// Turns the direction of travel, as [`Path::turn`](crate::Path::turn) does.
+    ///
+    /// # Errors
+    /// As [`Path::turn`](crate::Path::turn).
+    pub fn turn(mut self, by: S::Angle) -> Result<Self, InvalidInput> {
+        self.turn_by(by)?;
+        Ok(self)
+    }
+
+    /// Sets the angle from the direction of travel to the heading of the body, as [`Path::facing`](crate::Path::facing) does.
+    ///
+    /// # Errors
+    /// As [`Path::facing`](crate::Path::facing).
+    pub fn facing(mut self, angle: S::Angle) -> Result<Self, InvalidInput> {
+        self.face(angle)?;
+        Ok(self)
+    }
+
+    /// Changes gear at a cusp, as [`Path::reverse`](crate::Path::reverse) does.
+    ///
+    /// # Errors
+    /// As [`Path::reverse`](crate::Path::reverse).
+    pub fn reverse(mut self) -> Result<Self, InvalidInput> {
+        self.change_gear()?;
+        Ok(self)
+    }
+
+    /// Sets the profile that travels the path from rest to rest in the least time. Call it when the path is complete.
+    ///
+    /// # Errors
+    /// As [`Profile::rest_to_rest`]; [`InvalidInput::Full`] if it has more than `F` phases, of at most three.
+    pub fn rest_to_rest(self, limits: Limits<S>) -> Result<Self, InvalidInput> {
+        let length = self.storage.segments.last().map_or(S::ZERO, |last| last.to);
+        let profile = Profile::rest_to_rest(length, limits)?;
+        self.profile(profile.as_profile())
+    }
+
+    /// Sets the profile; without one the agent stands.
+    ///
+    /// # Errors
+    /// [`InvalidInput::Full`] if it has more than `F` phases.
+    pub fn profile(self, profile: ProfileRef<'_, S>) -> Result<Self, InvalidInput> {
+        let phases = &mut self.storage.next()?.phases;
+        phases.clear();
+        for phase in profile.phases() {
+            phases.push(*phase).map_err(|_| InvalidInput::Full("phase"))?;
+        }
+        Ok(self)
+    }
+
+    /// Completes the agent: a disc of this radius \[m\] that sets off at the time `start` \[s\].
+    ///
+    /// # Errors
+    /// As [`Motion::new`].
+    pub fn disc(self, radius: S, start: S) -> Result<StagedAgent<'f, 'o, S, A, N, F>, InvalidInput> {
+        crate::error::radius(radius)?;
+        self.staged(OutlineRef::disc(radius), start)
+    }
+
+    /// Completes the agent: an outline that sets off at the time `start` \[s\].
+    ///
+    /// # Errors
+    /// As [`Motion::with_outline`].
+    #[cfg(feature = "outlines")]
+    pub fn outline(
+        self,
+        outline: impl Into<OutlineRef<'o, S>>,
+        start: S,
+    ) -> Result<StagedAgent<'f, 'o, S, A, N, F>, InvalidInput> {
+        self.staged(outline.into(), start)
+    }
+
+    fn staged(self, outline: OutlineRef<'o, S>, start: S) -> Result<StagedAgent<'f, 'o, S, A, N, F>, InvalidInput> {
+        // There are at most 65535 segments.
+        let end = self.storage.segments.len() as u16;
+        let next = self.storage.next()?;
+        (next.segments, next.outline, next.start) = (end.wrapping_sub(next.begin), outline, start);
+        let staged = StagedAgent { storage: self.storage };
+        staged.motion()?;
+        Ok(staged)
+    }
+}
+
+impl<S: Scalar, const A: usize, const N: usize, const F: usize> SegmentChain<S> for NewAgent<'_, '_, S, A, N, F> {
+    fn last(&mut self) -> Result<&mut Segment<S>, InvalidInput> {
+        self.storage.segments.last_mut().ok_or(InvalidInput::Disconnected("segment"))
+    }
+
+    fn body(&mut self) -> &mut Option<Direction<S>> {
+        &mut self.body
+    }
+
+    fn push(&mut self, next: Segment<S>) -> Result<(), InvalidInput> {
+        let begin = self.storage.next()?.begin;
+        match self.storage.segments.get_mut(usize::from(begin)) {
+            // The one with which the path begins has no length; the first one that has takes its place.
+            Some(first) if first.length <= S::ZERO => *first = next,
+            _ => self.storage.segments.push(next).map_err(|_| InvalidInput::Full("segment"))?,
+        }
+        Ok(())
+    }
+}
+
+/// An agent that is complete, and does not belong to the fleet yet.
+#[derive(Debug)]
+#[must_use = "an agent belongs to the fleet once it is added"]
+pub struct StagedAgent<'f, 'o, S: Scalar, const A: usize, const N: usize, const F: usize> {
+    storage: &'f mut FleetStorage<'o, S, A, N, F>,
+}
+
+impl<'o, S: Scalar, const A: usize, const N: usize, const F: usize> StagedAgent<'_, 'o, S, A, N, F> {
+    /// Returns the storage with the fleet to which the agent does not belong yet.
+    pub fn storage(&self) -> &FleetStorage<'o, S, A, N, F> {
+        self.storage
+    }
+
+    /// Returns the motion of the agent, to try it before it is added.
+    ///
+    /// # Errors
+    /// None: it was accepted when the agent was completed.
+    pub fn motion(&self) -> Result<Motion<'_, S>, InvalidInput> {
+        let next = self.storage.next.as_ref().ok_or(InvalidInput::Disconnected("path"))?;
+        next.motion(&self.storage.segments)
+    }
+
+    /// Adds the agent to the fleet, behind all others, and returns its index.
+    ///
+    /// # Errors
+    /// [`InvalidInput::Full`] if there are `A` agents already.
+    pub fn add(self) -> Result<usize, InvalidInput> {
+        let index = self.storage.agents.len();
+        let next = self.storage.next.take().ok_or(InvalidInput::Disconnected("path"))?;
+        self.storage.agents.push(next).map_err(|_| InvalidInput::Full("agent"))?;
+        Ok(index)
+    }
+
+    /// Puts the agent in the place of another one. The storage has to have room for the segments of both. O(agents + segments).
+    ///
+    /// # Errors
+    /// [`FleetStorageError::NoSuchAgent`]; the fleet is then unchanged.
+    pub fn replace(self, agent: usize) -> Result<(), FleetStorageError> {
+        let stored = self.storage.agents.get_mut(agent).ok_or(FleetStorageError::NoSuchAgent(agent))?;
+        let (begin, segments) = (stored.begin, stored.segments);
+        *stored = self.storage.next.take().ok_or(InvalidInput::Disconnected("path"))?;
+        self.storage.close(begin, segments);
+        Ok(())
+    }
+}
+
+/// The motions of up to `A` agents of a [`FleetStorage`], as the slice that tables and queries take. Motions may be changed in place, for
+/// example to give them a margin.
+#[derive(Clone, Debug)]
+pub struct FleetMotions<'a, S: Scalar, const A: usize> {
+    motions: Vec<Motion<'a, S>, A>,
+}
+
+impl<'a, S: Scalar, const A: usize> FleetMotions<'a, S, A> {
+    /// Returns an empty list. It is all zeros, so a `static` takes no flash for it.
+    pub const fn new() -> Self {
+        Self { motions: Vec::new() }
+    }
+
+    /// Puts the motions of all agents of the storage into the list, in the place of those that were in it.
+    ///
+    /// # Errors
+    /// None: motions were accepted when their agents were added, and there is room for all of them.
+    pub fn fill<const N: usize, const F: usize>(
+        &mut self,
+        storage: &'a FleetStorage<'_, S, A, N, F>,
+    ) -> Result<(), InvalidInput> {
+        self.motions.clear();
+        for agent in &storage.agents {
+            self.motions.push(agent.motion(&storage.segments)?).map_err(|_| InvalidInput::Full("agent"))?;
+        }
+        Ok(())
+    }
+
+    /// Removes all motions.
+    pub fn clear(&mut self) {
+        self.motions.clear();
+    }
+}
+
+impl<S: Scalar, const A: usize> Default for FleetMotions<'_, S, A> {
+    fn default() -> Self {
+        Self::new()
+    }
+}
+
+impl<'a, S: Scalar, const A: usize> Deref for FleetMotions<'a, S, A> {
+    type Target = [Motion<'a, S>];
+
+    fn deref(&self) -> &Self::Target {
+        &self.motions
+    }
+}
+
+impl<S: Scalar, const A: usize> DerefMut for FleetMotions<'_, S, A> {
+    fn deref_mut(&mut self) -> &mut Self::Target {
+        &mut self.motions
+    }
+}
+
+#[cfg(all(test, feature = "libm", feature = "outlines"))]
+mod tests {
+    use super::*;
+    use crate::geometry::Point;
+    use crate::outline::Outline;
+    use crate::path::Path;
+    use crate::scalar::Radians;
+    use core::f64::consts::FRAC_PI_2;
+
+    type Storage<'o> = FleetStorage<'o, f64, 3, 8>;
+    const LIMITS: Limits<f64> = Limits { speed: 1.0, acceleration: 0.5 };
+
+    fn pose(x: f64, y: f64) -> Pose<f64> {
+        Pose { position: Point::new(x, y), heading: Radians(0.25) }
+    }
+
+    /// What regions and queries depend on.
+    fn same(motion: &Motion<'_, f64>, other: &Motion<'_, f64>) -> bool {
+        motion.path().segments() == other.path().segments()
+            && motion.profile().phases() == other.profile().phases()
+            && motion.outline().corners() == other.outline().corners()
+            && (motion.digest(0), motion.time(), motion.radius(), motion.lag())
+                == (other.digest(0), other.time(), other.radius(), other.lag())
+    }
+
+    /// A line of `length`, at this `y`.
+    fn add(storage: &mut Storage<'_>, y: f64, length: f64) -> Result<usize, InvalidInput> {
+        storage.start_at(pose(0.0, y))?.line(length)?.rest_to_rest(LIMITS)?.disc(0.25, y)?.add()
+    }
+
+    fn places<const A: usize>(storage: &FleetStorage<'_, f64, A, 8>) -> Vec<(f64, f64), 3> {
+        let mut fleet = FleetMotions::new();
+        fleet.fill(storage).unwrap();
+        fleet.iter().map(|motion| (motion.time().lo, motion.path().length())).collect()
+    }
+
+    #[test]
+    fn agents_are_those_of_paths_with_storage_of_their_own() {
+        let truck = Outline::<f64, 4>::rectangle(0.6, 0.3, 0.4, 0.4, 0.0).unwrap();
+        let mut storage = Storage::new();
+        let start = storage.start_at(pose(1.0, 2.0)).unwrap();
+        let path = start.line(0.0).unwrap().line(2.0).unwrap().reverse().unwrap().line(1.0).unwrap();
+        let path = path.arc_by(1.5, -FRAC_PI_2).unwrap().pivot(0.5, FRAC_PI_2).unwrap();
+        let staged = path.rest_to_rest(LIMITS).unwrap().outline(&truck, 3.0).unwrap();
+
+        let path = Path::<f64, 5>::starting_at(pose(1.0, 2.0)).unwrap().line(2.0).unwrap().reverse().unwrap();
+        let path = path.line(1.0).unwrap().arc_by(1.5, -FRAC_PI_2).unwrap().pivot(0.5, FRAC_PI_2).unwrap();
+        let profile = Profile::rest_to_rest(path.as_path().length(), LIMITS).unwrap();
+        let own = Motion::with_outline(path.as_path(), profile.as_profile(), &truck, 3.0).unwrap();
+        assert!(same(&staged.motion().unwrap(), &own));
+        assert_eq!(staged.add(), Ok(0));
+        assert!(same(&storage.motion(0).unwrap(), &own));
+
+        // One that stands, sideways, and one of segments from a list.
+        let stands = storage.start_at(pose(9.0, 9.0)).unwrap().facing(Radians(1.0)).unwrap();
+        assert_eq!(stands.outline(&truck, 0.0).unwrap().add(), Ok(1));
+        let path = Path::<f64, 1>::starting_at(pose(9.0, 9.0)).unwrap().facing(Radians(1.0)).unwrap();
+        let stands = Profile::<f64, 1>::standing();
+        let own = Motion::with_outline(path.as_path(), stands.as_profile(), &truck, 0.0).unwrap();
+        assert!(same(&storage.motion(1).unwrap(), &own));
+        let steps = [(Curve::Line, 1.0), (Curve::Arc { radius: 2.0, turn: TurnSide::Left }, 1.0)];
+        let start = storage.start_at(pose(0.0, 0.0)).unwrap();
+        let path = steps.iter().try_fold(start, |path, &(curve, length)| path.segment(curve, length)).unwrap();
+        let profile = Profile::<f64, 1>::from_pieces(1.0, [(2.0, 0.0)]).unwrap();
+        assert_eq!(path.profile(profile.as_profile()).unwrap().disc(0.5, 0.0).unwrap().add(), Ok(2));
+        assert_eq!(storage.motion(2).unwrap().path().segments().len(), 2);
+    }
+
+    #[test]
+    fn agents_that_are_not_added_leave_nothing_behind() {
+        let mut storage = Storage::new();
+        add(&mut storage, 0.0, 1.0).unwrap();
+        for _ in 0..20 {
+            let built = storage.start_at(pose(0.0, 5.0)).unwrap().line(1.0).unwrap().turn(Radians(1.0)).unwrap();
+            let built = built.line(1.0).unwrap().line(1.0).unwrap();
+            assert!(built.line(f64::NAN).is_err());
+            // A path that has no profile, and a profile that has no path.
+            let built = storage.start_at(pose(0.0, 5.0)).unwrap().line(1.0).unwrap();
+            assert!(matches!(built.disc(0.5, 0.0).err(), Some(InvalidInput::LengthMismatch { .. })));
+            let built = storage.start_at(pose(0.0, 5.0)).unwrap().rest_to_rest(LIMITS).unwrap();
+            assert!(built.line(1.0).unwrap().disc(0.5, 0.0).is_err());
+            let built = storage.start_at(pose(0.0, 5.0)).unwrap();
+            let _ = built.disc(0.5, 0.0).unwrap();
+        }
+        assert_eq!(places(&storage)[..], [(0.0, 1.0)]);
+        add(&mut storage, 1.0, 2.0).unwrap();
+        assert_eq!(places(&storage)[..], [(0.0, 1.0), (1.0, 2.0)]);
+    }
+
+    #[test]
+    fn agents_are_replaced_removed_and_delayed() {
+        let mut storage = Storage::new();
+        for (y, length) in [(0.0, 1.0), (1.0, 2.0), (2.0, 3.0)] {
+            add(&mut storage, y, length).unwrap();
+        }
+        let long = |storage: &mut Storage<'_>, agent| {
+            let path = storage.start_at(pose(0.0, 7.0))?.line(2.0)?.arc_by(1.0, 1.0)?.line(3.0)?;
+            path.rest_to_rest(LIMITS)?.disc(0.25, 7.0)?.replace(agent)
+        };
+        assert_eq!(long(&mut storage, 3), Err(FleetStorageError::NoSuchAgent(3)));
+        assert_eq!(places(&storage)[..], [(0.0, 1.0), (1.0, 2.0), (2.0, 3.0)]);
+        long(&mut storage, 0).unwrap();
+        assert_eq!(places(&storage)[..], [(7.0, 6.0), (1.0, 2.0), (2.0, 3.0)]);
+        assert_eq!(storage.delay(1, 0.5), Ok(Interval::new(1.5, 5.5)));
+        assert_eq!(storage.delay(3, 0.5), Err(FleetStorageError::NoSuchAgent(3)));
+        assert!(matches!(storage.delay(1, f64::MAX), Err(FleetStorageError::Invalid(_))));
+        storage.remove(1).unwrap();
+        assert_eq!(storage.remove(2), Err(FleetStorageError::NoSuchAgent(2)));
+        assert_eq!(places(&storage)[..], [(7.0, 6.0), (2.0, 3.0)]);
+        long(&mut storage, 1).unwrap();
+        storage.remove(0).unwrap();
+        assert_eq!(places(&storage)[..], [(7.0, 6.0)]);
+        storage.clear();
+        assert!(storage.is_empty() && places(&storage).is_empty());
+    }
+
+    #[test]
+    fn what_does_not_fit_is_refused_and_changes_nothing() {
+        let mut storage = FleetStorage::<f64, 1, 8, 2>::new();
+        let path = storage.start_at(pose(0.0, 0.0)).unwrap().line(4.0).unwrap();
+        assert_eq!(path.rest_to_rest(LIMITS).err(), Some(InvalidInput::Full("phase")));
+        let mut storage = FleetStorage::<f64, 1, 8>::new();
+        let fits = |storage: &mut FleetStorage<'_, f64, 1, 8>, segments: usize| {
+            let start = storage.start_at(pose(0.0, 0.0))?;
+            let path = (0..segments).try_fold(start, |path, _| path.line(1.0))?;
+            path.rest_to_rest(LIMITS)?.disc(0.25, 0.0)?.add()
+        };
+        assert_eq!(fits(&mut storage, 9), Err(InvalidInput::Full("segment")));
+        assert!(storage.is_empty());
+        assert_eq!(fits(&mut storage, 7), Ok(0));
+        assert_eq!(fits(&mut storage, 1), Err(InvalidInput::Full("agent")));
+        assert_eq!(fits(&mut storage, 2), Err(InvalidInput::Full("segment")));
+        assert_eq!(places(&storage)[..], [(0.0, 7.0)]);
+    }
+
+    #[test]
+    fn motions_may_have_margins_and_are_filled_again() {
+        let mut storage = Storage::new();
+        add(&mut storage, 0.0, 1.0).unwrap();
+        let mut fleet = FleetMotions::new();
+        fleet.fill(&storage).unwrap();
+        for motion in &mut *fleet {
+            *motion = motion.with_margin(0.1).unwrap();
+        }
+        assert_eq!(fleet[0].margin(), 0.1);
+        fleet.fill(&storage).unwrap();
+        assert_eq!((fleet.len(), fleet[0].margin()), (1, 0.0));
+    }
+}
