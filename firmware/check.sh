@@ -97,6 +97,14 @@ debug_stack() {
   done
 }
 
+# A control loop in an interrupt reads one table while the next one is computed.
+handover() {
+  local target=$1 format=$2
+  step "$target, $format: tables are handed over to an interrupt"
+  build "$target" "$format" handover
+  ICOUNT=7 ./qemu-run.sh "$out/$target/release/handover"
+}
+
 # What it prints and sends, against the host.
 behaviour() {
   local target=$1 format=$2 programs=$out/$1/release
@@ -331,6 +339,7 @@ one() {
     thumbv6m-none-eabi:q16) overflow "$target" "$format" ;;
     thumbv7em-none-eabihf:f32)
       debug_stack "$target" "$format"
+      handover "$target" "$format"
       cortex_m7
       stm32f405
       control "$target" "$format"

@@ -6,6 +6,7 @@
 //! number     what a number format has to offer besides the arithmetic    Number
 //! agent      an agent as it is sent, and how it comes into storage      Agent, Step
 //! message    requests and answers, regions as they are sent              Request, Answer
+//! can        authority and progress in frames of CAN and CAN FD          Message
 //! frame      their bytes on the line: COBS, check, version               Frame, Receiver
 //! table      what a supervisor keeps of its fleet                        Table
 //! traffic    the same with orders, for robots under way                  Traffic
@@ -19,6 +20,7 @@
 #![no_std]
 
 pub mod agent;
+pub mod can;
 pub mod client;
 pub mod dump;
 pub mod frame;

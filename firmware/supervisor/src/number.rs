@@ -12,6 +12,8 @@ pub trait Number: Scalar<Angle: Serialize + DeserializeOwned> + Serialize + Dese
     const ONE: Self;
     /// The bits of the number, for comparisons between machines.
     fn bits(self) -> u32;
+    /// The number with these bits, which may be none that a constructor accepts.
+    fn of_bits(bits: u32) -> Self;
     /// The bits of an angle.
     fn angle_bits(angle: Self::Angle) -> u32;
     /// The number in thousandths, rounded to nearest, for output.
@@ -24,6 +26,9 @@ impl Number for f32 {
     const ONE: Self = 1.0;
     fn bits(self) -> u32 {
         self.to_bits()
+    }
+    fn of_bits(bits: u32) -> Self {
+        Self::from_bits(bits)
     }
     fn angle_bits(angle: Self::Angle) -> u32 {
         angle.0.bits()
@@ -39,6 +44,9 @@ impl Number for pcr_core::scalar::Micro {
     const ONE: Self = Self(1.0);
     fn bits(self) -> u32 {
         self.0.to_bits()
+    }
+    fn of_bits(bits: u32) -> Self {
+        Self(f32::from_bits(bits))
     }
     fn angle_bits(angle: Self::Angle) -> u32 {
         angle.0.bits()
@@ -56,6 +64,9 @@ macro_rules! fixed {
             const ONE: Self = Self::ONE;
             fn bits(self) -> u32 {
                 self.to_bits().cast_unsigned()
+            }
+            fn of_bits(bits: u32) -> Self {
+                Self::from_bits(bits.cast_signed())
             }
             fn angle_bits(angle: Self::Angle) -> u32 {
                 angle.to_bits().cast_unsigned()

@@ -1,5 +1,6 @@
 //! All tests of the supervisor's jobs, as one program.
 
+mod can;
 mod dump;
 mod limits;
 mod line;
