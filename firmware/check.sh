@@ -235,6 +235,18 @@ limit() {
   [ "$value" -le "$3" ] || fail "$2: $value, more than the budget of $3"
 }
 
+# Most instructions of two paths for each pair of their segments: docs/maintain/firmware.md, worst case.
+worst_case() {
+  case $1:$2 in
+    thumb*:f32) echo 90000 ;;
+    thumb*:micro) echo 120000 ;;
+    thumbv7m*:q16) echo 210000 ;;
+    thumbv6m*:q16) echo 650000 ;;
+    riscv32imc*:q16) echo 280000 ;;
+    *) fail "no worst case for $1, $2" ;;
+  esac
+}
+
 budgets() {
   local file=$1 target=$2 format=$3 programs=$out/$2/release stack=2048
   limit "$file" "bytes of the table in RAM" 6144
@@ -265,6 +277,10 @@ budgets() {
       limit "$file" "bytes of code of a robot that keeps orders, the library not included" 8192
       ;;
   esac
+  local paths
+  for paths in "two paths of "{1,2,4,8}", the longest found" "table of all agents"; do
+    limit "$file" "instructions a pair of segments: $paths" "$(worst_case "$target" "$format")"
+  done
   # Single calls, where they are measured: tables and movement authority, and searches, which need more.
   local call
   case $target:$format in
