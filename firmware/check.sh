@@ -315,9 +315,9 @@ budgets() {
   esac
 }
 # docs/maintain/firmware.md says what is bought with it, and what stands in the way of 16 KiB, which was the aim.
-thumb_budget=21248
+thumb_budget=21760
 # 32-bit instructions where Thumb has 16-bit ones.
-riscv_budget=25088
+riscv_budget=25856
 
 # One line of both compilers: figures depend on it.
 compiler() {

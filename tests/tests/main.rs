@@ -26,6 +26,7 @@ mod exclusions_audit;
 mod exclusions_forms;
 mod exclusions_less;
 mod firmware;
+mod fleet_storage;
 mod footprints;
 mod formats;
 mod golden;

@@ -9,7 +9,7 @@ use crate::table::Table;
 use core::cell::RefCell;
 use heapless::Vec;
 use pcr_core::{
-    Ecm, EcmEntry, EcmError, FleetMotions, FleetStorage, Interval, InvalidInput, Limits, Motion, Piece, Pose,
+    Ecm, EcmEntry, EcmError, FleetMotions, FleetStorage, Interval, InvalidInput, Limits, Motion, Piece, Point, Pose,
     StagedAgent, earliest_start,
 };
 
@@ -237,20 +237,23 @@ where
         limits: Limits<S>,
         path: Vec<Step<S>, MAX_STEPS>,
     ) -> Result<Answer<S>, Refusal> {
-        let agent = {
-            let mut motions = FleetMotions::new();
-            put(&self.fleet, &mut motions)?;
-            self.table.arrived(&motions, index)?;
-            let before = motions.get(index).ok_or(no_such_agent(index))?;
-            let position = before.path().point_at(before.path().length());
-            let (radius, start_time) = (before.radius(), before.time().lo);
-            Agent { radius, start_time, limits, start: Pose { position, heading }, path }
-        };
+        let (radius, start_time, position) = self.end_of(index)?;
+        let agent = Agent { radius, start_time, limits, start: Pose { position, heading }, path };
         let staged = agent.stage(&mut self.fleet).map_err(|invalid| Refusal::agent(index, invalid))?;
         let edition = exchange(&mut self.table, index, &staged)?;
         staged.replace(index).map_err(|rejected| Refusal::change(index, rejected))?;
         set(&mut self.limits, index, limits);
         Ok(Answer::Edition(edition))
+    }
+
+    /// Radius and start time of a robot that is at the end of its path, and where that is.
+    #[inline(never)]
+    fn end_of(&self, index: usize) -> Result<(S, S, Point<S>), Refusal> {
+        let mut motions = FleetMotions::new();
+        put(&self.fleet, &mut motions)?;
+        self.table.arrived(&motions, index)?;
+        let before = motions.get(index).ok_or(no_such_agent(index))?;
+        Ok((before.radius(), before.time().lo, before.path().point_at(before.path().length())))
     }
 
     /// Writes the motions of the fleet to a list; refuses if the fleet has no such agent.
