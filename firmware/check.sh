@@ -315,9 +315,9 @@ budgets() {
   esac
 }
 # docs/maintain/firmware.md says what is bought with it, and what stands in the way of 16 KiB, which was the aim.
-thumb_budget=21760
+thumb_budget=22016
 # 32-bit instructions where Thumb has 16-bit ones.
-riscv_budget=25856
+riscv_budget=26368
 
 # One line of both compilers: figures depend on it.
 compiler() {
@@ -371,7 +371,8 @@ examples() {
     step "example for a board: $board"
     [ "$(wc -l <examples/"$board"/src/main.rs)" -lt 120 ] || fail "the example for $board is no longer short"
     (cd examples && ../cross.sh "$target" build --locked --release --quiet -p "example-$board" </dev/null)
-    readelf -SW "$out/$target/release/example-$board" | grep -q "[.]defmt" || fail "$board logs nothing"
+    # The first line of its log, and not errors only.
+    readelf -sW "$out/$target/release/example-$board" | grep -q "defmt_info" || fail "$board logs nothing"
   done <<'BOARDS'
 thumbv7em-none-eabihf stm32f4
 thumbv7em-none-eabihf nrf52840

@@ -12,6 +12,9 @@ use esp_hal::timer::timg::{MwdtStage, TimerGroup, Wdt};
 use esp_hal::uart::{Config, Uart};
 use example_fleet::{Line, WATCHDOG_MS, supervisor};
 
+// Without this description the boot loader does not start the program.
+esp_bootloader_esp_idf::esp_app_desc!();
+
 /// The way out.
 struct Port {
     uart: Uart<'static, Blocking>,
