@@ -3,6 +3,7 @@
 use crate::lifelong::{WAREHOUSE, graph, layout, one_way};
 use pcr_execution::lifelong::{CoordinationMethod, DelayModel, LifelongOptions, LifelongReport};
 use pcr_formats::import::{ImportedLayout, InputFormat};
+use pcr_formats::missions::SiteChanges;
 use std::collections::VecDeque;
 use std::f64::consts::TAU;
 
@@ -43,7 +44,13 @@ fn request(agents: usize, minutes: f64) -> LifelongOptions {
 
 /// The fleet with as many active robots as do most missions.
 fn limited(site: &ImportedLayout, agents: usize, minutes: f64) -> LifelongReport {
-    let answer = LifelongReport::limited(site, request(agents, minutes), &[CoordinationMethod::Orders], &|_, _| {});
+    let answer = LifelongReport::limited(
+        site,
+        request(agents, minutes),
+        &SiteChanges::default(),
+        &[CoordinationMethod::Orders],
+        &|_, _| {},
+    );
     let answer = answer.expect("a run");
     assert!(answer.is_sound(), "{answer:?}");
     assert_eq!((answer.asked, answer.hours), (agents, minutes / 60.0));
@@ -105,8 +112,9 @@ fn whole_runs_follow_trial_runs() {
     let site = round(8, 6.5);
     let methods = [CoordinationMethod::Orders, CoordinationMethod::RouteLocks];
     let told = std::cell::RefCell::new(Vec::new());
-    let answer =
-        LifelongReport::limited(&site, request(3, minutes), &methods, &|now, all| told.borrow_mut().push((now, all)));
+    let answer = LifelongReport::limited(&site, request(3, minutes), &SiteChanges::default(), &methods, &|now, all| {
+        told.borrow_mut().push((now, all))
+    });
     let answer = answer.expect("a run");
     assert_eq!((answer.runs.len(), answer.active), (2, 3), "{answer:?}");
     assert_eq!(answer.runs[0].outcome, whole(&site, 3, minutes).runs[0].outcome);

@@ -39,9 +39,11 @@
 //! joint_phase           the times at which they do
 //! motion_record         motions of the robots, for the independent checker            RunCertificate
 //! outcome               results of a run                                              LifelongResult
-//! own_missions          missions of a file, and what became of them                   ClosureEffect
+//! world_changes         what is closed, and who is stranded                           ChangeEffect
+//! change_effects        closures and breakdowns that begin and end
+//! change_results        what they did                                                 ChangeResults
+//! own_missions          missions of a file, and what became of them
 //! own_assignment        which vehicle does which of them
-//! own_events            closures and breakdowns
 //! own_run               a run of such missions                                        run_missions, MissionRun
 //! trajectory            what a robot did, as an agent of a scenario
 //! random_draws          random goals, delays and starts
@@ -56,6 +58,10 @@
 //! ```
 
 mod active_limit;
+mod change_effects;
+mod change_results;
+#[cfg(test)]
+mod change_tests;
 mod endpoints;
 mod forecast;
 mod gates;
@@ -66,7 +72,6 @@ mod lifelong_report;
 mod motion_record;
 mod outcome;
 mod own_assignment;
-mod own_events;
 mod own_missions;
 mod own_run;
 mod parking_spots;
@@ -94,16 +99,18 @@ mod timetable;
 mod trajectory;
 mod unblocking;
 mod unimpeded;
+mod world_changes;
 
+pub use change_results::{ChangeResult, ChangeResults, UnreachableGoal};
 pub use endpoints::WellFormedness;
 pub use lifelong_report::{LifelongReport, LifelongRunEntry, TrialRun};
 pub use motion_record::RunCertificate;
 pub use outcome::{LifelongResult, MeasuredLifelongRun, TimeShares};
-pub use own_missions::ClosureEffect;
-pub use own_run::{EventResult, MissionResult, MissionRun, MissionWait, run_missions};
+pub use own_run::{MissionResult, MissionRun, MissionWait, run_missions};
 pub use run::{run, run_tasks, watched};
 pub use streets::{aisles, streets};
 pub use tasks::TaskStream;
+pub use world_changes::ChangeEffect;
 
 pub use gates::{Gate, gates};
 

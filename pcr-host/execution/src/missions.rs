@@ -1,8 +1,9 @@
 //! Missions of one's own: the answer of `pcr traffic --missions`.
 
-use crate::lifelong::{ClosureEffect, EventResult, MissionResult, MissionRun, RunCertificate, run_missions};
+use crate::lifelong::{MissionResult, MissionRun, RunCertificate, run_missions};
+use crate::site_changes::{self, BreakdownEntry, ClosureEntry};
 use pcr_formats::import::ImportedLayout;
-use pcr_formats::missions::{ClosedElement, FleetMissions, MissionRequest};
+use pcr_formats::missions::{FleetMissions, MissionRequest};
 use pcr_formats::scenario::Scenario;
 use pcr_planning::certify::MotionCertificate;
 use serde::Serialize;
@@ -34,50 +35,6 @@ pub struct MissionsReport {
     pub breakdowns: Vec<BreakdownEntry>,
     /// Warnings about input that was changed or left out when it was read.
     pub warnings: Vec<String>,
-}
-
-/// A closure, and what became of the vehicles on whose routes it was when it began.
-#[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct ClosureEntry {
-    /// The edge, if it is one.
-    pub edge: Option<String>,
-    /// The node, if it is one.
-    pub node: Option<String>,
-    /// From when \[s\].
-    pub at: f64,
-    /// Until when \[s\]; none: for ever.
-    pub until: Option<f64>,
-    /// Whether it began before the run was over.
-    pub begun: bool,
-    /// Vehicles that were on it, or too near to stop before it, and drove through.
-    pub through: Vec<String>,
-    /// Vehicles that got another route to their goals.
-    pub rerouted: Vec<String>,
-    /// Vehicles that had to wait before it or elsewhere.
-    pub waited: Vec<String>,
-}
-
-/// A breakdown, and what became of the vehicles that would have waited for this one for ever.
-#[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct BreakdownEntry {
-    /// The vehicle.
-    pub vehicle: String,
-    /// From when \[s\].
-    pub at: f64,
-    /// Until when \[s\]; none: for ever.
-    pub until: Option<f64>,
-    /// Whether it began before the run was over.
-    pub begun: bool,
-    /// Edge on which the vehicle stands; none at a node, or if the breakdown did not begin.
-    pub edge: Option<String>,
-    /// Where it stands \[m\].
-    pub x: Option<f64>,
-    /// Where it stands \[m\].
-    pub y: Option<f64>,
-    /// Vehicles that got another route.
-    pub rerouted: Vec<String>,
-    /// Vehicles that had to wait.
-    pub waited: Vec<String>,
 }
 
 /// A mission in the timetable.
@@ -190,39 +147,10 @@ impl MissionsReport {
             x: wait.point[0],
             y: wait.point[1],
         });
-        let named = |event: &EventResult, effect: ClosureEffect| -> Vec<String> {
-            event.effects.iter().filter(|it| it.1 == effect).map(|it| id(it.0)).collect()
-        };
-        let closures = fleet.closures.iter().zip(&run.closures).map(|(it, event)| {
-            let (edge, node) = match it.element {
-                ClosedElement::Edge(edge) => (Some(imported.layout.edges[edge].id.to_string()), None),
-                ClosedElement::Node(place) => (None, Some(node(place))),
-            };
-            ClosureEntry {
-                edge,
-                node,
-                at: it.at,
-                until: it.until,
-                begun: event.is_begun,
-                through: named(event, ClosureEffect::Through),
-                rerouted: named(event, ClosureEffect::Rerouted),
-                waited: named(event, ClosureEffect::Waits),
-            }
-        });
-        let breakdowns = fleet.breakdowns.iter().zip(&run.breakdowns).map(|(it, event)| BreakdownEntry {
-            vehicle: id(it.vehicle),
-            at: it.at,
-            until: it.until,
-            begun: event.is_begun,
-            edge: event.place.as_ref().and_then(|place| place.0.clone()),
-            x: event.place.as_ref().map(|place| place.1[0]),
-            y: event.place.as_ref().map(|place| place.1[1]),
-            rerouted: named(event, ClosureEffect::Rerouted),
-            waited: named(event, ClosureEffect::Waits),
-        });
+        let (closures, breakdowns) = site_changes::entries(&imported.layout, &fleet.changes, &run.changes, id);
         let report = Self {
-            closures: closures.collect(),
-            breakdowns: breakdowns.collect(),
+            closures,
+            breakdowns,
             layout: imported.layout.name.clone(),
             done: missions.iter().filter(|mission| mission.finish.is_some()).count(),
             late: missions.iter().filter(|mission| mission.lateness.is_some_and(|late| late > 0.0)).count(),

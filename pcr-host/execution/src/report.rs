@@ -3,6 +3,7 @@
 mod lifelong;
 mod missions;
 mod simulation;
+mod site_changes;
 mod traffic;
 
 pub use lifelong::{LIFELONG_CSV_HEADER, lifelong_csv, lifelong_table};

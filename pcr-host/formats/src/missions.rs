@@ -5,11 +5,15 @@
 //! an error with its line and column.
 
 mod records;
+mod site_changes;
+
+pub use site_changes::{Breakdown, ClosedElement, Closure, SiteChanges};
 
 use crate::footprint::Footprint;
 use crate::import::{Layout, SizeSource, VehicleTraits};
 use crate::json::Position;
 use records::Record;
+use site_changes::vehicle;
 use std::fmt;
 
 /// Latest time in a file \[s\].
@@ -99,37 +103,6 @@ pub struct MissionRequest {
     pub vehicle: Option<usize>,
 }
 
-/// The element of a layout that is closed.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum ClosedElement {
-    /// An edge of the layout, by its index: nobody enters it, in either direction.
-    Edge(usize),
-    /// A node of the layout, by its index: nobody comes to it.
-    Node(usize),
-}
-
-/// An edge or a node that is closed for some time.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Closure {
-    /// What is closed.
-    pub element: ClosedElement,
-    /// Time from which on it is closed \[s\].
-    pub at: f64,
-    /// Time until which it is closed \[s\]; `None`: for ever.
-    pub until: Option<f64>,
-}
-
-/// A vehicle that stands still from a time on.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Breakdown {
-    /// Index of the vehicle.
-    pub vehicle: usize,
-    /// Time at which it begins to brake \[s\].
-    pub at: f64,
-    /// Time at which it can drive again \[s\]; `None`: never.
-    pub until: Option<f64>,
-}
-
 /// A fleet and its missions.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct FleetMissions {
@@ -137,10 +110,8 @@ pub struct FleetMissions {
     pub vehicles: Vec<FleetVehicle>,
     /// The missions, in the order of the files.
     pub missions: Vec<MissionRequest>,
-    /// The closures.
-    pub closures: Vec<Closure>,
-    /// The breakdowns.
-    pub breakdowns: Vec<Breakdown>,
+    /// What changes while they drive.
+    pub changes: SiteChanges,
 }
 
 /// Why a file of missions is refused.
@@ -180,15 +151,7 @@ impl FleetMissions {
         layout: &Layout,
         vehicle: &VehicleTraits,
     ) -> Result<Self, (usize, MissionFileError)> {
-        let mut all: Vec<(usize, RecordKind, Record<'_>)> = Vec::new();
-        for (file, source) in sources.iter().enumerate() {
-            let records = records::parse(source.text).map_err(|error| (file, error))?;
-            for record in records {
-                let kind = kind_of(&record, source.kind).map_err(|error| (file, error))?;
-                record.refuse_unknown(kind.fields(), kind.name()).map_err(|error| (file, error))?;
-                all.push((file, kind, record));
-            }
-        }
+        let all = all_records(sources)?;
         let mut fleet = Self::default();
         // Vehicles first: the others name them.
         for (file, kind, record) in &all {
@@ -196,12 +159,12 @@ impl FleetMissions {
                 fleet.add_vehicle(record, layout, vehicle).map_err(|error| (*file, error))?;
             }
         }
+        let names: Vec<String> = fleet.vehicles.iter().map(|vehicle| vehicle.id.clone()).collect();
         for (file, kind, record) in &all {
             let added = match kind {
                 RecordKind::Vehicle => Ok(()),
-                RecordKind::Mission => fleet.add_mission(record, layout),
-                RecordKind::Closure => fleet.add_closure(record, layout),
-                RecordKind::Breakdown => fleet.add_breakdown(record),
+                RecordKind::Mission => fleet.add_mission(record, layout, &names),
+                RecordKind::Closure | RecordKind::Breakdown => fleet.changes.add(*kind, record, layout, &names),
             };
             added.map_err(|error| (*file, error))?;
         }
@@ -259,7 +222,12 @@ impl FleetMissions {
         Ok(())
     }
 
-    fn add_mission(&mut self, record: &Record<'_>, layout: &Layout) -> Result<(), MissionFileError> {
+    fn add_mission(
+        &mut self,
+        record: &Record<'_>,
+        layout: &Layout,
+        vehicles: &[String],
+    ) -> Result<(), MissionFileError> {
         let id = record.name("id")?;
         if self.missions.iter().any(|other| other.id == id) {
             return Err(record.wrong("id", format!("there is a mission {id} already")));
@@ -274,36 +242,9 @@ impl FleetMissions {
             return Err(record.wrong("due", "it is due before it is released".into()));
         }
         let priority = record.integer("priority")?.unwrap_or(0);
-        let vehicle = record.text("vehicle")?.map(|name| self.vehicle(&name)).transpose()?;
+        let vehicle = record.text("vehicle")?.map(|name| vehicle(vehicles, &name)).transpose()?;
         self.missions.push(MissionRequest { id, stops, has_origin: from.is_some(), release, due, priority, vehicle });
         Ok(())
-    }
-
-    fn add_closure(&mut self, record: &Record<'_>, layout: &Layout) -> Result<(), MissionFileError> {
-        let element = match (record.text("edge")?, record.text("node")?) {
-            (Some(name), None) => ClosedElement::Edge(edge(layout, &name)?),
-            (None, Some(name)) => ClosedElement::Node(node(layout, &name)?),
-            _ => {
-                let problem = "a closure is of an edge or of a node";
-                return Err(MissionFileError { position: record.position, problem: problem.into() });
-            }
-        };
-        let (at, until) = times(record)?;
-        self.closures.push(Closure { element, at, until });
-        Ok(())
-    }
-
-    fn add_breakdown(&mut self, record: &Record<'_>) -> Result<(), MissionFileError> {
-        let vehicle = self.vehicle(&record.required("vehicle")?)?;
-        let (at, until) = times(record)?;
-        self.breakdowns.push(Breakdown { vehicle, at, until });
-        Ok(())
-    }
-
-    /// The vehicle of a name.
-    fn vehicle(&self, (name, position): &PlacedName) -> Result<usize, MissionFileError> {
-        let found = self.vehicles.iter().position(|vehicle| vehicle.id == *name);
-        found.ok_or_else(|| MissionFileError { position: *position, problem: format!("there is no vehicle {name}") })
     }
 }
 
@@ -315,15 +256,20 @@ fn kind_of(record: &Record<'_>, usual: RecordKind) -> Result<RecordKind, Mission
     found.ok_or_else(|| MissionFileError { position, problem: problem() })
 }
 
-/// The times of a closure or breakdown.
-fn times(record: &Record<'_>) -> Result<(f64, Option<f64>), MissionFileError> {
-    let at = record.number("at", 0.0, LATEST)?;
-    let at = at.ok_or_else(|| record.missing("at"))?;
-    let until = record.number("until", 0.0, LATEST)?;
-    if until.is_some_and(|until| until <= at) {
-        return Err(record.wrong("until", "it ends before it begins".into()));
+/// The records of some files, each with the index of its file.
+fn all_records<'t>(
+    sources: &[MissionSource<'t>],
+) -> Result<Vec<(usize, RecordKind, Record<'t>)>, (usize, MissionFileError)> {
+    let mut all = Vec::new();
+    for (file, source) in sources.iter().enumerate() {
+        let records = records::parse(source.text).map_err(|error| (file, error))?;
+        for record in records {
+            let kind = kind_of(&record, source.kind).map_err(|error| (file, error))?;
+            record.refuse_unknown(kind.fields(), kind.name()).map_err(|error| (file, error))?;
+            all.push((file, kind, record));
+        }
     }
-    Ok((at, until))
+    Ok(all)
 }
 
 /// A name in a file, and where it is.

@@ -22,7 +22,7 @@ pub(crate) type ArgumentRule =
     (&'static str, &'static [&'static str], ArgumentRelation, &'static [&'static str], &'static str);
 
 /// All of them.
-pub(crate) const RULES: [ArgumentRule; 34] = [
+pub(crate) const RULES: [ArgumentRule; 36] = [
     ("", &["json"], Excludes, &["format"], "--json is --format json; give one of them"),
     ("demo", &["scenario"], Excludes, &["output"], "--scenario prints the scenario and draws no pictures"),
     (
@@ -54,12 +54,20 @@ pub(crate) const RULES: [ArgumentRule; 34] = [
         &["agents", "active", "hours", "seed", "compare", "stopped", "slip"],
         "vehicles and missions are those of the file, which run once and without random delays",
     ),
+    ("traffic", &["vehicles"], Needs, &["missions"], "random missions have vehicles of their own; add --missions FILE"),
     (
         "traffic",
-        &["vehicles", "closures"],
+        &["closures", "breakdowns"],
         Needs,
-        &["missions"],
-        "random missions have vehicles of their own and no closures; add --missions FILE",
+        &["missions", "hours"],
+        "a plan is of a site that does not change; add --hours H or --missions FILE",
+    ),
+    (
+        "traffic",
+        &["closures", "breakdowns"],
+        Excludes,
+        &["compare"],
+        "methods are compared on a site that does not change",
     ),
     (
         "traffic",

@@ -13,7 +13,7 @@ use pcr_execution::missions::MissionsReport;
 use pcr_execution::report;
 use pcr_execution::traffic::{TrafficOptions, TrafficReport, room};
 use pcr_formats::import::{ImportOptions, ImportedLayout, SizeSource};
-use pcr_formats::missions::{FleetMissions, MissionSource, RecordKind};
+use pcr_formats::missions::{FleetMissions, MissionFileError, MissionSource, RecordKind, SiteChanges};
 use pcr_formats::warning::WarningCode;
 use pcr_planning::report::json;
 use std::io::Write;
@@ -54,9 +54,12 @@ pub(super) struct TrafficArgs {
     /// Vehicles in a file of their own, for --missions
     #[arg(long, value_name = "FILE")]
     vehicles: Option<PathBuf>,
-    /// Closures and breakdowns in a file of their own
+    /// Closures, for --missions or --hours (JSON Lines or CSV)
     #[arg(long, value_name = "FILE")]
     closures: Option<PathBuf>,
+    /// Breakdowns; with --hours, robots are 1, 2, ...
+    #[arg(long, value_name = "FILE")]
+    breakdowns: Option<PathBuf>,
     /// The same seed gives the same missions
     #[arg(long, value_name = "N", default_value_t = 1, value_parser = parse_integer::<u64>)]
     seed: u64,
@@ -120,6 +123,7 @@ impl TrafficArgs {
         let agents = Self::room(self.agents, file, &mut imported);
         let asked = self.agents.map_or(agents, usize::from);
         if let Some(hours) = self.hours {
+            let changes = self.changes(&imported, agents)?;
             let usual = DelayModel::default();
             let request = lifelong::LifelongOptions {
                 agents,
@@ -143,9 +147,9 @@ impl TrafficArgs {
                 Some(active) => {
                     let all = request.duration * methods.len() as f64;
                     let request = lifelong::LifelongOptions { agents: active, ..request };
-                    LifelongReport::watched(&imported, request, methods, &|now| told(now, all))
+                    LifelongReport::watched(&imported, request, &changes, methods, &|now| told(now, all))
                 }
-                None => LifelongReport::limited(&imported, request, methods, &told),
+                None => LifelongReport::limited(&imported, request, &changes, methods, &told),
             };
             drop(progress);
             let mut answer = answer.map_err(|problem| CliError::wrong(file, problem))?;
@@ -183,22 +187,50 @@ impl TrafficArgs {
     }
 }
 
+/// Files of records, read with what their records are if they do not say it.
+struct RecordFiles<'a> {
+    files: Vec<(&'a Path, RecordKind)>,
+    texts: Vec<String>,
+}
+
+impl<'a> RecordFiles<'a> {
+    fn of(files: &[(&'a Option<PathBuf>, RecordKind)]) -> Result<Self, CliError> {
+        let given = files.iter().filter_map(|&(file, kind)| Some((file.as_deref()?, kind)));
+        let files: Vec<(&Path, RecordKind)> = given.collect();
+        let texts = files.iter().map(|(file, _)| text(file)).collect::<Result<Vec<String>, CliError>>()?;
+        Ok(Self { files, texts })
+    }
+
+    fn sources(&self) -> Vec<MissionSource<'_>> {
+        self.files.iter().zip(&self.texts).map(|(&(_, kind), text)| MissionSource { text, kind }).collect()
+    }
+
+    /// The error of one of the files.
+    fn wrong(&self, (place, error): (usize, MissionFileError)) -> CliError {
+        CliError::at(self.files[place].0, &error)
+    }
+}
+
 impl TrafficArgs {
+    /// The closures and breakdowns of a run of some robots.
+    fn changes(&self, imported: &ImportedLayout, robots: usize) -> Result<SiteChanges, CliError> {
+        let files =
+            RecordFiles::of(&[(&self.closures, RecordKind::Closure), (&self.breakdowns, RecordKind::Breakdown)])?;
+        let names: Vec<String> = (1..=robots).map(|number| number.to_string()).collect();
+        SiteChanges::read(&files.sources(), &imported.layout, &names).map_err(|error| files.wrong(error))
+    }
+
     /// Runs the missions of a file.
     fn run_missions(&self, layout: &Path, imported: &ImportedLayout) -> Result<ExitCode, CliError> {
-        let files = [
+        let files = RecordFiles::of(&[
             (&self.vehicles, RecordKind::Vehicle),
             (&self.missions, RecordKind::Mission),
             (&self.closures, RecordKind::Closure),
-        ];
-        let files: Vec<(&Path, RecordKind)> =
-            files.into_iter().filter_map(|(file, kind)| Some((file.as_deref()?, kind))).collect();
-        let texts = files.iter().map(|(file, _)| text(file)).collect::<Result<Vec<String>, CliError>>()?;
-        let sources: Vec<MissionSource<'_>> =
-            files.iter().zip(&texts).map(|(&(_, kind), text)| MissionSource { text, kind }).collect();
+            (&self.breakdowns, RecordKind::Breakdown),
+        ])?;
         let missions_file = self.missions.as_deref().unwrap_or(Path::new("-"));
-        let fleet = FleetMissions::read(&sources, &imported.layout, &imported.vehicle)
-            .map_err(|(place, error)| CliError::at(files[place].0, &error))?;
+        let fleet = FleetMissions::read(&files.sources(), &imported.layout, &imported.vehicle)
+            .map_err(|error| files.wrong(error))?;
         let wrong = |problem: String| CliError::wrong(missions_file, problem);
         if fleet.vehicles.is_empty() {
             return Err(wrong("there is no vehicle; add lines of the kind vehicle, or --vehicles FILE".into()));

@@ -8,6 +8,7 @@
 use super::lifelong_report::{LifelongReport, LifelongRunEntry, TrialRun};
 use super::{CoordinationMethod, LifelongOptions, LifelongResult};
 use pcr_formats::import::ImportedLayout;
+use pcr_formats::missions::SiteChanges;
 
 /// Longest trial run \[s\].
 const TRIAL: f64 = 900.0;
@@ -28,6 +29,7 @@ impl LifelongReport {
     pub fn limited(
         imported: &ImportedLayout,
         request: LifelongOptions,
+        changes: &SiteChanges,
         methods: &[CoordinationMethod],
         told: &dyn Fn(f64, f64),
     ) -> Result<Self, String> {
@@ -36,7 +38,8 @@ impl LifelongReport {
         let mut run = |robots: usize, duration: f64| {
             let request = LifelongOptions { agents: robots, duration, ..request };
             let all = over + duration + request.duration;
-            let answer = Self::watched(imported, request, &[CoordinationMethod::Orders], &|now| told(over + now, all));
+            let answer =
+                Self::watched(imported, request, changes, &[CoordinationMethod::Orders], &|now| told(over + now, all));
             over += duration;
             answer
         };
@@ -64,10 +67,9 @@ impl LifelongReport {
         answer.trials = trials.iter().map(Trial::entry).collect();
         if methods != [CoordinationMethod::Orders] || answer.hours * 3600.0 < request.duration {
             let request = LifelongOptions { agents: answer.active, ..request };
-            answer.runs = Self::watched(imported, request, methods, &|now| {
-                told(over + now, over + methods.len() as f64 * request.duration);
-            })?
-            .runs;
+            let all = over + methods.len() as f64 * request.duration;
+            let whole = Self::watched(imported, request, changes, methods, &|now| told(over + now, all))?;
+            (answer.runs, answer.closures, answer.breakdowns) = (whole.runs, whole.closures, whole.breakdowns);
             answer.hours = request.duration / 3600.0;
         }
         answer.asked = request.agents;

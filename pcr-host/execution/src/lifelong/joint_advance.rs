@@ -269,7 +269,7 @@ impl<'s> Push<'s> {
     /// The atoms on which a robot may go on, the best for its own mission first. The robot for which all others make way only goes
     /// nearer to its goal.
     fn candidates(&self, robot: usize) -> Vec<usize> {
-        let LifelongState { site, network, missions, joint, robots, closed, .. } = self.state;
+        let LifelongState { site, network, missions, joint, robots, world, .. } = self.state;
         let pose = self.state.whole(robot).end_pose;
         let times = missions[robot].map(|mission| network.times(site, mission.goal));
         // A robot without a mission goes anywhere.
@@ -283,7 +283,7 @@ impl<'s> Push<'s> {
         if robots[robot].cut.is_some() {
             return Vec::new();
         }
-        let open = site.leaving[pose.node].iter().filter(|&&atom| joint.is_round[atom] && closed[atom] == 0);
+        let open = site.leaving[pose.node].iter().filter(|&&atom| joint.is_round[atom] && world.closed[atom] == 0);
         let mut found: Vec<(f64, f64, usize)> = open.map(|&atom| (cost(atom).0, cost(atom).1, atom)).collect();
         if robot == self.root {
             found.retain(|it| it.0 < here);

@@ -3,7 +3,9 @@
 use super::{
     CoordinationMethod, DelayModel, LifelongOptions, LifelongResult, MeasuredLifelongRun, WellFormedness, run,
 };
+use crate::site_changes::{self, BreakdownEntry, ClosureEntry};
 use pcr_formats::import::ImportedLayout;
+use pcr_formats::missions::SiteChanges;
 use serde::Serialize;
 
 /// Runs of a fleet. The JSON output, field for field in this order.
@@ -31,6 +33,10 @@ pub struct LifelongReport {
     pub alone: f64,
     /// One run for each method.
     pub runs: Vec<LifelongRunEntry>,
+    /// The closures, in the order of the files.
+    pub closures: Vec<ClosureEntry>,
+    /// The breakdowns, in the order of the files.
+    pub breakdowns: Vec<BreakdownEntry>,
     /// Warnings about input that was changed or left out when it was read.
     pub warnings: Vec<String>,
 }
@@ -74,24 +80,30 @@ impl LifelongReport {
         request: LifelongOptions,
         methods: &[CoordinationMethod],
     ) -> Result<Self, String> {
-        Self::watched(imported, request, methods, &|_| {})
+        Self::watched(imported, request, &SiteChanges::default(), methods, &|_| {})
     }
 
-    /// Runs as [`LifelongReport::run`], and tells from time to time how much of the time of all runs is simulated \[s\].
+    /// Runs as [`LifelongReport::run`] on a site that changes, and tells from time to time how much of the time of all runs is simulated
+    /// \[s\]. The robots have the numbers from 1 on as their names.
     ///
     /// # Errors
-    /// Errors of [`super::run`].
+    /// Errors of [`super::run`], and changes for other methods than passing orders.
     pub fn watched(
         imported: &ImportedLayout,
         request: LifelongOptions,
+        changes: &SiteChanges,
         methods: &[CoordinationMethod],
         told: &dyn Fn(f64),
     ) -> Result<Self, String> {
         let mut well_formedness = WellFormedness::default();
         let (mut runs, mut alone) = (Vec::new(), 0.0);
+        let (mut closures, mut breakdowns) = (Vec::new(), Vec::new());
         for (before, &method) in methods.iter().enumerate() {
             let before = before as f64 * request.duration;
-            let report = run::watched(imported, LifelongOptions { method, ..request }, &|now| told(before + now))?;
+            let report =
+                run::watched(imported, LifelongOptions { method, ..request }, changes, &|now| told(before + now))?;
+            let name = |robot: usize| (robot + 1).to_string();
+            (closures, breakdowns) = site_changes::entries(&imported.layout, changes, &report.changes, name);
             runs.push(LifelongRunEntry::of(&report));
             alone = report.alone;
             well_formedness = report.layout;
@@ -108,6 +120,8 @@ impl LifelongReport {
             well_formedness,
             alone,
             runs,
+            closures,
+            breakdowns,
             warnings: imported.layout.warnings.clone(),
         })
     }
@@ -147,8 +161,10 @@ mod tests {
         let request = LifelongOptions { agents: 2, duration: 60.0, delays, seed: 1, method };
         let told = RefCell::new(Vec::new());
         let methods = [CoordinationMethod::Orders, CoordinationMethod::EdgeLocks];
-        let watched =
-            LifelongReport::watched(&imported, request, &methods, &|now| told.borrow_mut().push(now)).unwrap();
+        let watched = LifelongReport::watched(&imported, request, &SiteChanges::default(), &methods, &|now| {
+            told.borrow_mut().push(now)
+        })
+        .unwrap();
         let told = told.into_inner();
         assert!(told.is_sorted() && told.len() >= 2 * methods.len(), "{told:?}");
         assert_eq!((told.last(), watched.runs.len()), (Some(&120.0), 2));

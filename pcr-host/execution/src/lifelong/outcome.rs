@@ -1,6 +1,7 @@
 //! Results of a run.
 
 use super::CoordinationMethod;
+use super::change_results::ChangeResults;
 use super::endpoints::WellFormedness;
 use super::motion_record::RunCertificate;
 use serde::Serialize;
@@ -102,6 +103,8 @@ pub struct MeasuredLifelongRun {
     pub time: Duration,
     /// Time at which the last goal was reached \[s\].
     pub last_arrival: f64,
+    /// What the changes of the site did.
+    pub changes: ChangeResults,
 }
 
 impl MeasuredLifelongRun {

@@ -34,7 +34,8 @@ impl LifelongState {
             }
         }
         for robot in 0..self.robots.len() {
-            let is_free = self.missions[robot].is_none() && self.is_able(robot, now);
+            let is_free =
+                self.missions[robot].is_none() && self.world.suspended[robot].is_none() && self.is_able(robot, now);
             let Some(mission) = own.current[robot].filter(|_| is_free) else { continue };
             let mission = &own.missions[mission];
             let Some(&stop) = mission.request.stops.get(mission.reached.len()) else { continue };
@@ -73,7 +74,7 @@ impl LifelongState {
 
     /// Whether a vehicle can drive.
     fn is_able(&self, robot: usize, now: f64) -> bool {
-        self.robots[robot].stopped_until <= now
+        !self.world.is_stranded(robot, now)
     }
 
     /// Notes that a vehicle has reached the next stop of its mission.

@@ -3,7 +3,6 @@
 //! A mission is a list of stops. The vehicle gets them one after the other, each as a mission of its own, with the next one known
 //! before it is at the present one.
 
-use pcr_formats::import::Layout;
 use pcr_formats::missions::{FleetMissions, MissionRequest};
 
 /// What became of a mission.
@@ -46,28 +45,6 @@ pub(super) struct OwnWait {
     pub(super) point: [f64; 2],
 }
 
-/// What a closure did to a vehicle.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum ClosureEffect {
-    /// It was on the element, or too near to stop before it.
-    Through,
-    /// It got another route.
-    Rerouted,
-    /// It went elsewhere or stopped, and waits.
-    Waits,
-}
-
-/// A closure or breakdown that has begun.
-#[derive(Clone, Debug, Default)]
-pub(super) struct OwnEvent {
-    pub(super) is_begun: bool,
-    pub(super) is_over: bool,
-    /// Vehicles on whose routes it is, and what became of them.
-    pub(super) effects: Vec<(usize, ClosureEffect)>,
-    /// Where a vehicle that broke down stands: its edge, `None` at a node, and the point \[m\].
-    pub(super) place: Option<(Option<usize>, [f64; 2])>,
-}
-
 /// The missions of a file.
 #[derive(Clone, Debug)]
 pub(super) struct OwnMissions {
@@ -76,18 +53,15 @@ pub(super) struct OwnMissions {
     /// The mission of each vehicle.
     pub(super) current: Vec<Option<usize>>,
     pub(super) waits: Vec<OwnWait>,
-    /// What became of the closures and breakdowns of the file.
-    pub(super) closures: Vec<OwnEvent>,
-    pub(super) breakdowns: Vec<OwnEvent>,
     /// Time at which a stop was reached for the last time \[s\].
     pub(super) progress: f64,
-    /// Names of the nodes and edges of the layout.
-    pub(super) nodes: Vec<String>,
-    pub(super) edges: Vec<String>,
+    /// For each vehicle whether it stands where it can never leave, and the place for which that is known.
+    pub(super) is_parked: Vec<bool>,
+    pub(super) looked_at: Vec<Option<usize>>,
 }
 
 impl OwnMissions {
-    pub(super) fn new(fleet: &FleetMissions, layout: &Layout) -> Self {
+    pub(super) fn new(fleet: &FleetMissions) -> Self {
         let missions = fleet.missions.iter().map(|request| OwnMission {
             request: request.clone(),
             outcome: MissionOutcome::Open,
@@ -96,12 +70,16 @@ impl OwnMissions {
             reached: Vec::new(),
         });
         let (missions, current) = (missions.collect(), vec![None; fleet.vehicles.len()]);
-        let nodes = layout.nodes.iter().map(|node| node.id.to_string()).collect();
-        let edges = layout.edges.iter().map(|edge| edge.id.to_string()).collect();
-        let [closures, breakdowns] =
-            [fleet.closures.len(), fleet.breakdowns.len()].map(|count| vec![OwnEvent::default(); count]);
-        let (fleet, waits, progress) = (fleet.clone(), Vec::new(), 0.0);
-        Self { fleet, missions, current, waits, closures, breakdowns, progress, nodes, edges }
+        let count = fleet.vehicles.len();
+        Self {
+            fleet: fleet.clone(),
+            missions,
+            current,
+            waits: Vec::new(),
+            progress: 0.0,
+            is_parked: vec![false; count],
+            looked_at: vec![None; count],
+        }
     }
 
     /// Number of missions that are done or given up.
@@ -145,12 +123,5 @@ impl OwnMissions {
             Some(last) => last.time[1] = wait.time[1],
             None => self.waits.push(wait),
         }
-    }
-
-    /// Whether closures or breakdowns begin or end after this time.
-    pub(super) fn is_changing(&self, now: f64) -> bool {
-        let closures = self.fleet.closures.iter().map(|it| (it.at, it.until));
-        let breakdowns = self.fleet.breakdowns.iter().map(|it| (it.at, it.until));
-        closures.chain(breakdowns).any(|(at, until)| at > now || until.is_some_and(|until| until > now))
     }
 }

@@ -1,13 +1,15 @@
 //! A run of the missions of a file: until all are done or given up, without random delays.
 
+use super::change_results::ChangeResults;
 use super::endpoints::{Endpoints, WellFormedness};
 use super::motion_record::{CheckWindow, RunCertificate};
-use super::own_missions::{ClosureEffect, MissionOutcome, OwnEvent, OwnMission, OwnMissions, OwnWait};
+use super::own_missions::{MissionOutcome, OwnMission, OwnMissions, OwnWait};
 use super::random_draws::STEP;
 use super::robot::LifelongRobot;
 use super::route_graph::{DeparturePose, RouteGraph, VehicleLayer};
 use super::run_state::LifelongState;
 use super::trajectory;
+use super::world_changes::ChangeId;
 use super::{CoordinationMethod, DelayModel, LifelongOptions};
 use pcr_formats::import::ImportedLayout;
 use pcr_formats::missions::{FleetMissions, FleetVehicle};
@@ -31,10 +33,8 @@ pub struct MissionRun {
     pub scenario: Scenario,
     /// Result of the independent checker for the motions as they were recorded, with their turns in place.
     pub certificate: RunCertificate,
-    /// What each closure did, in the order of the file.
-    pub closures: Vec<EventResult>,
-    /// What each breakdown did, in the order of the file.
-    pub breakdowns: Vec<EventResult>,
+    /// What the changes of the site did.
+    pub changes: ChangeResults,
     /// For each vehicle the node of the layout where it stands in the end; `None` on an edge.
     pub ends: Vec<Option<usize>>,
     /// Time at which the last vehicle stands \[s\].
@@ -54,15 +54,11 @@ pub struct MissionResult {
     pub reason: Option<String>,
 }
 
-/// What a closure or breakdown did.
-#[derive(Clone, Debug, PartialEq)]
-pub struct EventResult {
-    /// Whether it began before the run was over.
-    pub is_begun: bool,
-    /// Vehicles on whose routes it was, and what became of them.
-    pub effects: Vec<(usize, ClosureEffect)>,
-    /// Where the vehicle that broke down stands: the id of its edge, `None` at a node, and the point \[m\].
-    pub place: Option<(Option<String>, [f64; 2])>,
+/// Why no vehicle can do a mission.
+struct ImpossibleMission {
+    why: String,
+    /// The change because of which a vehicle cannot come to a node of the layout, if it is one.
+    cause: Option<(ChangeId, usize, usize)>,
 }
 
 /// A vehicle that waited for another one.
@@ -90,14 +86,14 @@ pub fn run_missions(
     told: &dyn Fn(f64, usize),
 ) -> Result<MissionRun, String> {
     let mut run = LifelongState::of_fleet(imported, fleet)?;
-    run.refuse_impossible();
+    run.refuse_impossible(0.0);
     let window = CheckWindow::new(&run.site, &run.robots);
     let (mut still, mut tick) = (0.0, 0);
     loop {
         let now = tick as f64 * STEP;
         let stand = run.robots.iter().all(LifelongRobot::has_arrived);
         let Some(own) = &run.own else { break };
-        let is_to_come = own.is_to_come(now) || own.is_changing(now);
+        let is_to_come = own.is_to_come(now) || run.world.is_to_come(now);
         if own.is_over() && stand {
             break;
         }
@@ -111,6 +107,7 @@ pub fn run_missions(
             told(now, run.own.as_ref().map_or(0, OwnMissions::over));
         }
         run.change_world(now);
+        run.note_parked(now);
         run.give(now);
         run.decide(now);
         run.note_begun(now);
@@ -161,86 +158,131 @@ impl LifelongState {
         let delays = DelayModel { stopped: 0.0, stop: 1.0, slip: 0.0 };
         let method = CoordinationMethod::Orders;
         let request = LifelongOptions { agents: starts.len(), duration: f64::INFINITY, delays, seed: 1, method };
-        let run = Self::standing(None, site, ends, WellFormedness::default(), &starts, request)?;
-        Ok(Self { own: Some(OwnMissions::new(fleet, &imported.layout)), ..run })
+        let run =
+            Self::standing((imported, false), site, ends, WellFormedness::default(), &starts, request, &fleet.changes)?;
+        Ok(Self { own: Some(OwnMissions::new(fleet)), ..run })
+    }
+
+    /// Notes vehicles that can never leave where they stand. Missions that are impossible for that reason are given up.
+    fn note_parked(&mut self, now: f64) {
+        let is_new = |own: &OwnMissions, robot: usize| {
+            let it = &self.robots[robot];
+            it.has_arrived() && it.cut.is_none() && own.looked_at[robot] != Some(it.way.end())
+        };
+        let Some(own) = &self.own else { return };
+        let new: Vec<usize> = (0..self.robots.len()).filter(|&robot| is_new(own, robot)).collect();
+        let parked: Vec<bool> = new.iter().map(|&robot| !self.can_leave(own, robot)).collect();
+        let Some(own) = &mut self.own else { return };
+        for (&robot, &is_parked) in new.iter().zip(&parked) {
+            own.looked_at[robot] = Some(self.robots[robot].way.end());
+            own.is_parked[robot] = is_parked;
+        }
+        if parked.contains(&true) {
+            self.refuse_impossible(now);
+        }
+    }
+
+    /// Whether a vehicle can ever go where it would not touch one that comes to the place where it stands.
+    fn can_leave(&self, own: &OwnMissions, robot: usize) -> bool {
+        let here = self.robots[robot].way.end();
+        let blocked = self.blocked_for_ever(own, robot);
+        let it = &self.robots[robot];
+        let from = it.way.committed_part(&self.site, it.at, it.stop(), it.turned).end_pose;
+        let toll = |atom: usize| if blocked[atom] { f64::INFINITY } else { 0.0 };
+        !self.network.quickest(&self.site, from, toll, |node| !self.site.collide(here, node), None, 1).is_empty()
     }
 
     /// Gives up the missions that no vehicle can do, whatever the others do.
-    pub(super) fn refuse_impossible(&mut self) {
+    pub(super) fn refuse_impossible(&mut self, now: f64) {
         let Some(own) = &self.own else { return };
-        let reasons: Vec<(usize, String)> = own
+        let reasons: Vec<(usize, ImpossibleMission)> = own
             .missions
             .iter()
             .enumerate()
             .filter(|(_, mission)| matches!(mission.outcome, MissionOutcome::Open | MissionOutcome::Begun))
             .filter_map(|(place, mission)| Some((place, self.why_impossible(own, mission)?)))
             .collect();
-        if let Some(own) = &mut self.own {
-            for (mission, why) in reasons {
-                let vehicle = own.current.iter().position(|current| *current == Some(mission));
-                own.refuse(mission, why);
-                if let Some(robot) = vehicle {
-                    self.missions[robot] = None;
-                    self.robots[robot].way.goals.clear();
-                }
+        for (mission, ImpossibleMission { why, cause }) in reasons {
+            if let Some((change, robot, node)) = cause {
+                self.world.lose(change, robot, node, now);
+            }
+            let Some(own) = &mut self.own else { return };
+            let vehicle = own.current.iter().position(|current| *current == Some(mission));
+            own.refuse(mission, why);
+            if let Some(robot) = vehicle {
+                self.missions[robot] = None;
+                self.world.suspended[robot] = None;
+                self.robots[robot].way.goals.clear();
             }
         }
     }
 
-    /// The reason why no vehicle can do a mission from where it is now; `None` if one can.
-    fn why_impossible(&self, own: &OwnMissions, mission: &OwnMission) -> Option<String> {
+    /// Why no vehicle can do a mission from where it is now; `None` if one can.
+    fn why_impossible(&self, own: &OwnMissions, mission: &OwnMission) -> Option<ImpossibleMission> {
         let stops = &mission.request.stops[mission.reached.len().min(mission.request.stops.len())..];
         // Whoever has begun it goes on.
         let vehicles: Vec<usize> = match mission.vehicle.or(mission.request.vehicle) {
             Some(vehicle) => vec![vehicle],
             None => (0..self.robots.len()).collect(),
         };
-        let blocked = self.blocked_for_ever(own);
         if vehicles.is_empty() {
-            return Some("there is no vehicle".into());
+            return Some(ImpossibleMission { why: "there is no vehicle".into(), cause: None });
         }
-        let mut reasons = Vec::new();
+        let (mut reasons, mut first_cause) = (Vec::new(), None);
         for vehicle in vehicles {
             let id = &own.fleet.vehicles[vehicle].id;
-            if self.robots[vehicle].stopped_until == f64::INFINITY {
+            if self.world.stranded[vehicle] == f64::INFINITY {
                 reasons.push(format!("vehicle {id} broke down"));
                 continue;
             }
+            let blocked = self.blocked_for_ever(own, vehicle);
             let lost = (1..=stops.len()).find(|&count| !self.reaches(vehicle, &stops[..count], &blocked))?;
             let from = match lost.checked_sub(2) {
                 Some(before) => format!("node {}", self.name_of(stops[before])),
                 None => "where it is".into(),
             };
             let forbidden = &own.fleet.vehicles[vehicle].forbidden;
-            let mut why = if forbidden.is_empty() { "" } else { " without the edges that are forbidden to it" };
+            let mut why = match forbidden.is_empty() {
+                true => String::new(),
+                false => " without the edges that are forbidden to it".into(),
+            };
             if self.reaches(vehicle, &stops[..lost], &[]) {
-                why = " without what is closed, or in the way of a vehicle that broke down, for ever";
+                let cause = self.cause(vehicle, &stops[..lost], &self.world.lasting());
+                first_cause = first_cause.or(cause.map(|change| (change, vehicle, stops[lost - 1])));
+                why = match cause {
+                    Some(_) => " without what is closed, or in the way of a vehicle that broke down, for ever".into(),
+                    None => format!(" past {}, which can never leave", self.parked_names(own, vehicle)),
+                };
             }
             reasons.push(format!(
                 "vehicle {id}: no route leads from {from} to node {}{why}",
                 self.name_of(stops[lost - 1])
             ));
         }
-        Some(reasons.join("; "))
+        Some(ImpossibleMission { why: reasons.join("; "), cause: first_cause })
     }
 
-    /// For each atom whether it is closed for ever, or a vehicle stands on it that never drives again.
-    fn blocked_for_ever(&self, own: &OwnMissions) -> Vec<bool> {
+    /// The names of all vehicles but one that can never leave where they stand.
+    fn parked_names(&self, own: &OwnMissions, vehicle: usize) -> String {
+        let parked = (0..self.robots.len()).filter(|&other| other != vehicle && own.is_parked[other]);
+        let names: Vec<&str> = parked.map(|other| own.fleet.vehicles[other].id.as_str()).collect();
+        names.join(", ")
+    }
+
+    /// For each atom whether it is closed for ever, or a vehicle other than this one stands on it that never drives again, or can never leave.
+    fn blocked_for_ever(&self, own: &OwnMissions, vehicle: usize) -> Vec<bool> {
         let mut blocked = vec![false; self.site.atoms.len()];
-        let closures = own.fleet.closures.iter().zip(&own.closures);
-        for (closure, _) in closures.filter(|(closure, event)| event.is_begun && closure.until.is_none()) {
-            self.closed_atoms(closure.element).into_iter().for_each(|atom| blocked[atom] = true);
+        for change in self.world.lasting() {
+            self.blocked(change, vehicle).iter().for_each(|&atom| blocked[atom] = true);
         }
-        for (robot, it) in self.robots.iter().enumerate() {
-            if it.stopped_until == f64::INFINITY {
-                self.end_covers(robot).iter().for_each(|&atom| blocked[atom] = true);
-            }
+        for other in (0..self.robots.len()).filter(|&other| other != vehicle && own.is_parked[other]) {
+            self.end_covers(other).iter().for_each(|&atom| blocked[atom] = true);
         }
         blocked
     }
 
     /// Whether routes lead a vehicle to all of these nodes of the layout, one after the other, over atoms that are not blocked.
-    fn reaches(&self, robot: usize, stops: &[usize], blocked: &[bool]) -> bool {
+    pub(super) fn reaches(&self, robot: usize, stops: &[usize], blocked: &[bool]) -> bool {
         let it = &self.robots[robot];
         let mut from = it.way.committed_part(&self.site, it.at, it.stop(), it.turned).end_pose;
         let toll = |atom: usize| if blocked.get(atom) == Some(&true) { f64::INFINITY } else { 0.0 };
@@ -254,7 +296,7 @@ impl LifelongState {
 
     /// The name of a node of the layout.
     fn name_of(&self, place: usize) -> &str {
-        self.own.as_ref().and_then(|own| own.nodes.get(place)).map_or("", String::as_str)
+        self.world.nodes.get(place).map_or("", String::as_str)
     }
 
     /// Gives up all missions that are not done.
@@ -269,6 +311,7 @@ impl LifelongState {
         }
         own.progress = now;
         self.missions.fill(None);
+        self.world.suspended.fill(None);
     }
 
     /// The reason why a mission did not come to its end.
@@ -276,7 +319,7 @@ impl LifelongState {
         let it = &own.missions[mission];
         let Some(vehicle) = it.vehicle else {
             return match self.why_impossible(own, it) {
-                Some(why) => why,
+                Some(impossible) => impossible.why,
                 None => "every vehicle that can do it was on another mission to the end".into(),
             };
         };
@@ -352,16 +395,10 @@ impl LifelongState {
             vehicle: it.vehicle,
             first: it.other,
             time: it.time,
-            edge: it.edge.map(|edge| own.edges[edge].clone()),
+            edge: it.edge.map(|edge| self.world.edges[edge].clone()),
             point: it.point,
         });
-        let event = |event: &OwnEvent| EventResult {
-            is_begun: event.is_begun,
-            effects: event.effects.clone(),
-            place: event.place.map(|(edge, point)| (edge.map(|edge| own.edges[edge].clone()), point)),
-        };
-        let closures = own.closures.iter().map(event).collect();
-        let breakdowns = own.breakdowns.iter().map(event).collect();
+        let changes = self.changed();
         let (missions, mut waits): (Vec<_>, Vec<MissionWait>) = (missions.collect(), waits.collect());
         waits.sort_by(|a, b| a.time[0].total_cmp(&b.time[0]).then(a.vehicle.cmp(&b.vehicle)));
         let mut agents = Vec::new();
@@ -375,6 +412,6 @@ impl LifelongState {
         let scenario = Scenario::new(name, agents);
         let mut certificate = RunCertificate::new();
         certificate.window(&self.site, &mut self.robots, &mut window, duration);
-        Ok(MissionRun { missions, waits, scenario, certificate, closures, breakdowns, ends, duration })
+        Ok(MissionRun { missions, waits, scenario, certificate, changes, ends, duration })
     }
 }

@@ -9,6 +9,7 @@ use super::run_state::{LifelongState, RobotMission};
 use super::tasks::TaskStream;
 use super::{CoordinationMethod, LifelongOptions};
 use pcr_formats::import::ImportedLayout;
+use pcr_formats::missions::SiteChanges;
 use std::time::{Duration, Instant};
 
 /// Number of control steps after which the motion is certified.
@@ -31,19 +32,20 @@ const QUIET: f64 = 60.0;
 /// # Errors
 /// An edge that is no path, or a layout without room for any robot.
 pub fn run(imported: &ImportedLayout, request: LifelongOptions) -> Result<MeasuredLifelongRun, String> {
-    watched(imported, request, &|_| {})
+    watched(imported, request, &SiteChanges::default(), &|_| {})
 }
 
-/// Runs a fleet as [`run`], and tells from time to time how much of the time is simulated \[s\].
+/// Runs a fleet as [`run`] on a site that changes, and tells from time to time how much of the time is simulated \[s\].
 ///
 /// # Errors
-/// Errors of [`run`].
+/// Errors of [`run`], and changes for another method than passing orders.
 pub fn watched(
     imported: &ImportedLayout,
     request: LifelongOptions,
+    changes: &SiteChanges,
     told: &dyn Fn(f64),
 ) -> Result<MeasuredLifelongRun, String> {
-    driven(LifelongState::new(imported, request, None)?, request, told)
+    driven(LifelongState::new(imported, request, changes, None)?, request, told)
 }
 
 /// Runs a fleet on a layout with shared tasks and the starts that belong to them, until all tasks are done or the time of the
@@ -57,7 +59,7 @@ pub fn run_tasks(
     request: LifelongOptions,
     tasks: &TaskStream,
 ) -> Result<MeasuredLifelongRun, String> {
-    driven(LifelongState::new(imported, request, Some(tasks))?, request, &|_| {})
+    driven(LifelongState::new(imported, request, &SiteChanges::default(), Some(tasks))?, request, &|_| {})
 }
 
 fn driven(mut run: LifelongState, request: LifelongOptions, told: &dyn Fn(f64)) -> Result<MeasuredLifelongRun, String> {
@@ -79,6 +81,7 @@ fn driven(mut run: LifelongState, request: LifelongOptions, told: &dyn Fn(f64)) 
         }
         let begin = Instant::now();
         if open {
+            run.change_world(now);
             run.give(now);
             run.refresh(tick, now);
             run.decide(now);
@@ -99,6 +102,7 @@ fn driven(mut run: LifelongState, request: LifelongOptions, told: &dyn Fn(f64)) 
     run.outcome.certificate = certificate;
     Ok(MeasuredLifelongRun {
         outcome: run.finished(),
+        changes: run.changed(),
         layout: run.layout,
         alone,
         decisions: run.decisions,
@@ -163,7 +167,7 @@ impl LifelongState {
         let Self { request, .. } = *self;
         let waits =
             |mission: &RobotMission| if mission.admitted { 0.0 } else { request.duration - mission.assigned_at };
-        let waits: Vec<f64> = self.missions.iter().flatten().map(waits).collect();
+        let waits: Vec<f64> = self.missions.iter().chain(&self.world.suspended).flatten().map(waits).collect();
         let mut outcome = self.outcome.clone();
         outcome.time.norm();
         outcome.waiting = waits.iter().copied().fold(0.0, f64::max);

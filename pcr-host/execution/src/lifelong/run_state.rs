@@ -19,8 +19,10 @@ use super::route_finder::RouteFinder;
 use super::route_graph::RouteGraph;
 use super::tasks::{TaskQueue, TaskStream};
 use super::timetable::Timetable;
+use super::world_changes::WorldChanges;
 use super::{CoordinationMethod, LifelongOptions};
 use pcr_formats::import::ImportedLayout;
+use pcr_formats::missions::SiteChanges;
 use std::time::{Duration, Instant};
 
 /// The mission of a robot.
@@ -79,10 +81,8 @@ pub(super) struct LifelongState {
     pub(super) joint: JointPhase,
     /// Tasks that are not done yet, if the robots share them.
     pub(super) tasks: Option<TaskQueue>,
-    /// For each atom by how many closures it is closed.
-    pub(super) closed: Vec<u16>,
-    /// Time of the next search for routes of vehicles that stopped on an edge \[s\].
-    pub(super) freed: f64,
+    /// What changes on the site.
+    pub(super) world: WorldChanges,
     /// Missions of a file, instead of random ones.
     pub(super) own: Option<OwnMissions>,
 }
@@ -91,8 +91,12 @@ impl LifelongState {
     pub(super) fn new(
         imported: &ImportedLayout,
         request: LifelongOptions,
+        changes: &SiteChanges,
         tasks: Option<&TaskStream>,
     ) -> Result<Self, String> {
+        if !changes.is_empty() && request.method != CoordinationMethod::Orders {
+            return Err(format!("{} are compared on sites that do not change", request.method.name()));
+        }
         let site = RouteGraph::new(imported)?;
         let ends = Endpoints::of(&site, request.seed);
         let layout = ends.report(&site, &imported.layout);
@@ -100,7 +104,7 @@ impl LifelongState {
             Some(tasks) => tasks.starts(&site)?,
             None => starts(&site, &ends, request.agents, request.seed),
         };
-        let run = Self::standing(Some(imported), site, ends, layout, &starts, request)?;
+        let run = Self::standing((imported, true), site, ends, layout, &starts, request, changes)?;
         // Not in unoptimized tests, because it takes long there.
         if !cfg!(debug_assertions) && tasks.is_some() {
             run.network.warm(&run.site, &run.ends.nodes);
@@ -108,24 +112,27 @@ impl LifelongState {
         Ok(Self { tasks: tasks.map(TaskQueue::of), ..run })
     }
 
-    /// A fleet that stands at these nodes. `imported` is the layout if additional places on its dead ends may be used.
+    /// A fleet that stands at these nodes of a layout, of which additional places on dead ends may be used or not.
     pub(super) fn standing(
-        imported: Option<&ImportedLayout>,
+        (imported, may_queue): (&ImportedLayout, bool),
         mut site: RouteGraph,
         mut ends: Endpoints,
         layout: WellFormedness,
         starts: &[usize],
         request: LifelongOptions,
+        changes: &SiteChanges,
     ) -> Result<Self, String> {
         // With fewer robots than safe ends a robot can always make way at a free end.
         let is_tight = starts.len() >= ends.capacity;
-        let places = imported.filter(|_| is_tight).map(|imported| queued(imported, &site));
+        let places = (may_queue && is_tight).then(|| queued(imported, &site));
         let is_full = |lanes: &[Vec<usize>]| starts.len() > ends.capacity || lanes.iter().any(|lane| lane.len() > 1);
         let places = places.filter(|(_, lanes)| is_full(lanes));
-        let crowded = places.is_some() || (imported.is_none() && starts.len() > ends.capacity);
-        if let Some((queued, lanes)) = places {
-            site = RouteGraph::new(&queued)?;
-            ends = ends.queued(&site, lanes);
+        let crowded = places.is_some() || (!may_queue && starts.len() > ends.capacity);
+        let mut layout_used = &imported.layout;
+        if let Some((queued, lanes)) = &places {
+            site = RouteGraph::new(queued)?;
+            ends = ends.queued(&site, lanes.clone());
+            layout_used = &queued.layout;
         }
         let network = RouteFinder::new(&site);
         // Not in unoptimized tests, because it takes long there.
@@ -163,8 +170,7 @@ impl LifelongState {
             time: TimeShares::default(),
         };
         Ok(Self {
-            closed: vec![0; site.atoms.len()],
-            freed: 0.0,
+            world: WorldChanges::new(changes, layout_used, count, site.atoms.len()),
             book: RegionTable::new(&site, &robots),
             locks: RouteReservations::new(count),
             network,
@@ -210,7 +216,7 @@ impl LifelongState {
             return;
         }
         for robot in 0..self.robots.len() {
-            if self.missions[robot].is_some() {
+            if self.missions[robot].is_some() || !self.has_goals(robot, now) {
                 continue;
             }
             let it = &self.robots[robot];
@@ -268,8 +274,8 @@ impl LifelongState {
             is_urgent: self.is_urgent,
             reserved: &self.reserved,
             parked: &self.parked,
-            stays: self.own.is_some(),
-            closed: &self.closed,
+            stays: self.own.is_some() || !self.world.present.is_empty(),
+            closed: &self.world.closed,
             time: now,
             timetable: self.is_large().then_some(&self.timetable),
             method: self.request.method,

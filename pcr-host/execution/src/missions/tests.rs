@@ -191,6 +191,13 @@ fn closed_edges_are_left_driven_round_or_waited_for() {
     assert_eq!(never.refused, 1, "{never:?}");
     let why = never.missions[0].reason.as_deref().unwrap_or_default();
     assert!(why.contains("closed"), "{why}");
+    let lost = |report: &MissionsReport| {
+        let lost = &report.closures[0].unreachable;
+        lost.iter().map(|it| (it.vehicle.clone(), it.node.clone(), it.given_up)).collect::<Vec<_>>()
+    };
+    assert_eq!(lost(&never), [("a".into(), "5".into(), true)]);
+    assert_eq!(lost(&bay), [("a".into(), "5".into(), false)]);
+    assert_eq!(lost(&early), []);
 }
 
 #[test]
@@ -237,6 +244,38 @@ fn who_is_behind_a_broken_vehicle_stops_behind_it() {
         {"kind": "breakdown", "vehicle": "a", "at": 12, "until": 60}"#,
     );
     assert!(report.done == 2 && finish(&report, "m2") > Some(60.0), "{report:?}");
+}
+
+/// The second mission goes to a bay that nobody can leave, and where a vehicle stands or comes to stand.
+#[test]
+fn a_mission_to_where_somebody_parks_for_good_is_refused_at_once() {
+    let points = [[0.0, 0.0], [5.0, 0.0], [10.0, 0.0], [5.0, 5.0]];
+    let imported = site(&points, &[(10, [0, 1]), (11, [1, 0]), (12, [1, 2]), (13, [1, 3]), (14, [3, 1])]);
+    for (start, first, finished) in [(2, 2, 1), (0, 2, 1)] {
+        let text = format!(
+            r#"{{"kind": "vehicle", "id": "a", "start": {start}}}
+            {{"kind": "vehicle", "id": "b", "start": 3}}
+            {{"id": "m1", "vehicle": "a", "to": {first}}}
+            {{"id": "m2", "vehicle": "b", "to": 2, "release": 20}}"#
+        );
+        let source = MissionSource { text: &text, kind: RecordKind::Mission };
+        let fleet = FleetMissions::read(&[source], &imported.layout, &imported.vehicle).expect("missions");
+        let run = run_missions(&imported, &fleet, &|_, _| {}).expect("a run");
+        assert_eq!(run.missions.iter().filter(|it| it.reason.is_none()).count(), finished);
+        let why = run.missions[1].reason.as_deref();
+        assert_eq!(why, Some("vehicle b: no route leads from where it is to node 2 past a, which can never leave"));
+        // Without a look at it, two minutes without a motion would tell.
+        assert!(run.duration < 30.0, "{start}: {}", run.duration);
+    }
+    // Of two vehicles in the bays of a two-way site each can make way.
+    let both = report(
+        &square(),
+        r#"{"kind": "vehicle", "id": "a", "start": 4}
+        {"kind": "vehicle", "id": "b", "start": 5}
+        {"id": "m1", "vehicle": "a", "to": 5}
+        {"id": "m2", "vehicle": "b", "to": 4}"#,
+    );
+    assert!(both.is_sound(), "{both:?}");
 }
 
 /// Missions at random on a real site, for vehicles of three types, with closures and breakdowns or without.

@@ -1,5 +1,6 @@
 //! Fleets that run for hours, for reading.
 
+use super::site_changes::site_changes;
 use crate::lifelong::{LifelongReport, LifelongRunEntry, TimeShares, WellFormedness};
 use pcr_formats::import::ElementId;
 use pcr_planning::report::text_table::TextTable;
@@ -136,7 +137,7 @@ pub fn lifelong_table(lifelong: &LifelongReport, out: &mut dyn Write) -> io::Res
             run.outcome.method.name()
         )?;
     }
-    Ok(())
+    site_changes(&lifelong.closures, &lifelong.breakdowns, out)
 }
 
 /// How many robots are active, and why not all of them.

@@ -1,5 +1,6 @@
 //! Missions of one's own, for reading.
 
+use super::site_changes::site_changes;
 use crate::missions::{MissionsReport, WaitEntry};
 use pcr_planning::report::text_table::TextTable;
 use pcr_planning::report::{counted, heading, printable};
@@ -58,55 +59,12 @@ pub fn missions_table(report: &MissionsReport, out: &mut dyn Write) -> io::Resul
             writeln!(out, "mission {} is not done: {}", printable(&mission.id), printable(why))?;
         }
     }
-    events(report, out)?;
+    site_changes(&report.closures, &report.breakdowns, out)?;
     waits(&report.waits, out)?;
     match certificate.verdict {
         "proved" => writeln!(out, "no contact, proved for {}", counted(certificate.pairs, "pair")),
         verdict => writeln!(out, "contact of vehicles: {verdict}"),
     }
-}
-
-/// What closures and breakdowns did.
-fn events(report: &MissionsReport, out: &mut dyn Write) -> io::Result<()> {
-    let until = |until: Option<f64>| until.map_or_else(|| "for ever".to_owned(), |until| format!("until {until} s"));
-    let list = |ids: &[String]| match ids {
-        [] => "nobody".to_owned(),
-        ids => printable(&ids.join(", ")).to_string(),
-    };
-    for it in &report.closures {
-        let what = match (&it.edge, &it.node) {
-            (Some(edge), _) => format!("edge {edge}"),
-            (None, node) => format!("node {}", node.as_deref().unwrap_or_default()),
-        };
-        writeln!(
-            out,
-            "{} closed from {} s {}: {} drove through, {} went another way, {} waited",
-            printable(&what),
-            it.at,
-            until(it.until),
-            list(&it.through),
-            list(&it.rerouted),
-            list(&it.waited)
-        )?;
-    }
-    for it in &report.breakdowns {
-        let place = match (it.x, it.y, &it.edge) {
-            (Some(x), Some(y), Some(edge)) => format!(" on edge {edge} at ({x:.2}, {y:.2})"),
-            (Some(x), Some(y), None) => format!(" at ({x:.2}, {y:.2})"),
-            _ => String::new(),
-        };
-        writeln!(
-            out,
-            "{} stands still from {} s {}{}: {} went another way, {} waited",
-            printable(&it.vehicle),
-            it.at,
-            until(it.until),
-            printable(&place),
-            list(&it.rerouted),
-            list(&it.waited)
-        )?;
-    }
-    Ok(())
 }
 
 /// The longest waits.
