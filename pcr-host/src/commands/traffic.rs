@@ -54,7 +54,7 @@ pub(super) struct TrafficArgs {
     /// Vehicles in a file of their own, for --missions
     #[arg(long, value_name = "FILE")]
     vehicles: Option<PathBuf>,
-    /// Closures, for --missions or --hours (JSON Lines or CSV)
+    /// Closures, for --missions or --hours
     #[arg(long, value_name = "FILE")]
     closures: Option<PathBuf>,
     /// Breakdowns; with --hours, robots are 1, 2, ...
@@ -63,7 +63,7 @@ pub(super) struct TrafficArgs {
     /// The same seed gives the same missions
     #[arg(long, value_name = "N", default_value_t = 1, value_parser = parse_integer::<u64>)]
     seed: u64,
-    /// Run the fleet for H hours with delays; prove no contact
+    /// Run the fleet for H hours; prove no contact
     #[arg(long, value_name = "H", value_parser = hours)]
     hours: Option<f64>,
     /// Robots on the layout [default: as many as do most missions]
@@ -72,7 +72,7 @@ pub(super) struct TrafficArgs {
     /// Run it again with locks, and with start delays
     #[arg(long)]
     compare: bool,
-    /// Fraction of time that robots are stopped [default: 0.02]
+    /// Part of the time robots are stopped [default: 0.02]
     #[arg(long, value_name = "PART", value_parser = part)]
     stopped: Option<f64>,
     /// Largest fraction of their speed that robots lose [default: 0.05]

@@ -1,4 +1,4 @@
-//! `pcr traffic --missions`.
+//! `pcr traffic --missions`, and closures and breakdowns, also with `--hours`.
 
 use crate::fixture::{directory, file, run};
 use serde_json::Value;
@@ -60,6 +60,77 @@ fn closures_are_told_and_missions_that_are_impossible_end_with_status_1() {
         table.out
     );
     assert!(table.out.contains("\nnode 60 closed from 1 s for ever: "), "{}", table.out);
+}
+
+#[test]
+fn closures_and_breakdowns_are_told_of_fleets_that_run() {
+    let closed = missions(
+        "hours.jsonl",
+        "{\"edge\": 10120, \"at\": 60, \"until\": 300}\n{\"kind\": \"closure\", \"node\": 60, \"at\": 5}\n{\"node\": 0, \"at\": 9000}\n",
+    );
+    let broken = missions("hours.csv", "vehicle,at,until\n2,100,200\n6,100,\n");
+    let ask = [
+        &["traffic", WAREHOUSE, "--hours", "0.25", "--radius", "0.4", "--agents", "8", "--active", "5"][..],
+        &["--closures", &closed, "--breakdowns", &broken, "--allow", "assumed-vehicle", "--allow", "gap", "-q"],
+    ]
+    .concat();
+    let report: Value = run(&[&ask[..], &["--json"]].concat()).json();
+    assert_eq!(report["runs"][0]["certificate"]["verdict"], "proved");
+    assert_eq!(report["runs"][0]["breaches"], 0);
+    let closures = report["closures"].as_array().unwrap();
+    assert_eq!(closures.iter().map(|it| it["begun"] == true).collect::<Vec<_>>(), [true, true, false]);
+    assert_eq!((&closures[0]["edge"], &closures[0]["until"]), (&"10120".into(), &300.0.into()));
+    // Node 60 is a bay of its own: all tasks there are given up, and by nobody else's fault.
+    let lost = closures[1]["unreachable"].as_array().unwrap();
+    assert!(!lost.is_empty() && lost.iter().all(|it| it["given_up"] == true), "{lost:?}");
+    assert!(lost.iter().any(|it| it["node"] == "60"), "{lost:?}");
+    let breakdowns = report["breakdowns"].as_array().unwrap();
+    assert!(breakdowns[0]["x"].is_f64() && breakdowns[0]["vehicle"] == "2", "{breakdowns:?}");
+    // Robot 6 is not active.
+    assert!(breakdowns[1]["x"].is_null() && breakdowns[1]["begun"] == true, "{breakdowns:?}");
+    let table = run(&ask[..ask.len() - 1]).ok();
+    for told in [
+        "\nedge 10120 closed from 60 s until 300 s: ",
+        "\nnode 60 closed from 5 s for ever: ",
+        "\n  no way to 60",
+        "\nnode 0 would have been closed from 9000 s, after the end\n",
+        "\n2 stands still from 100 s until 200 s ",
+        "\n6 is not on the layout and cannot break down at 100 s\n",
+    ] {
+        assert!(table.contains(told), "{told}: {table}");
+    }
+    // Without them another fleet.
+    let without = run(&[&ask[..10], &["--allow", "assumed-vehicle", "--allow", "gap", "-q", "--json"]].concat()).json();
+    assert!(without["runs"] != report["runs"] && without["closures"] == Value::Array(Vec::new()));
+    for (name, text, told) in [
+        ("far.jsonl", "{\"kind\": \"breakdown\", \"vehicle\": 9, \"at\": 0}", ":1:34: there is no vehicle 9\n"),
+        ("task.jsonl", "{\"kind\": \"mission\", \"id\": 1, \"to\": 9}", ":1:1: a mission; only closures and"),
+    ] {
+        let wrong = missions(name, text);
+        let error = run(&[&ask[..10], &["--closures", &wrong, "-q"]].concat()).failed(2);
+        assert!(error.starts_with(&format!("pcr: {wrong}{told}")), "{name}: {error}");
+    }
+}
+
+#[test]
+fn a_mission_to_where_somebody_parks_for_good_is_told() {
+    let site = missions(
+        "sink.geojson",
+        r#"{"type": "FeatureCollection", "name": "sink", "features": [
+        {"type": "Feature", "properties": {"id": 0}, "geometry": {"type": "Point", "coordinates": [0, 0]}},
+        {"type": "Feature", "properties": {"id": 1}, "geometry": {"type": "Point", "coordinates": [5, 0]}},
+        {"type": "Feature", "properties": {"id": 2}, "geometry": {"type": "Point", "coordinates": [10, 0]}},
+        {"type": "Feature", "properties": {"id": 10, "startid": 0, "endid": 1}, "geometry": {"type": "LineString", "coordinates": [[0, 0], [5, 0]]}},
+        {"type": "Feature", "properties": {"id": 11, "startid": 1, "endid": 0}, "geometry": {"type": "LineString", "coordinates": [[5, 0], [0, 0]]}},
+        {"type": "Feature", "properties": {"id": 12, "startid": 1, "endid": 2}, "geometry": {"type": "LineString", "coordinates": [[5, 0], [10, 0]]}}]}"#,
+    );
+    let day = missions(
+        "sink.jsonl",
+        "{\"kind\": \"vehicle\", \"id\": \"a\", \"start\": 2, \"radius\": 0.4}\n{\"kind\": \"vehicle\", \"id\": \"b\", \"start\": 0, \"radius\": 0.4}\n{\"id\": 1, \"to\": 2, \"vehicle\": \"b\"}\n",
+    );
+    let report = run(&["traffic", &site, "--missions", &day, "--allow", "assumed-vehicle", "-q", "--json"]).json_of(1);
+    let why = "vehicle b: no route leads from where it is to node 2 past a, which can never leave";
+    assert_eq!(report["missions"][0]["reason"], why);
 }
 
 #[test]

@@ -72,6 +72,8 @@ fn every_output_fits_its_schema() {
     assert_eq!(lines.iter().flat_map(|line| faults(&closed(schema("pcr-mission-lines")), line)).count(), 0);
     formats.push("pcr-mission-lines".into());
     let day = file("schema", "day.jsonl", day);
+    let closed = file("schema", "closed.jsonl", r#"{"node": 7, "at": 3}"#);
+    let broken = file("schema", "broken.jsonl", r#"{"vehicle": 1, "at": 50, "until": 90}"#);
     for arguments in [
         &["regions", PAPER, "--slices", "2", "--margin", "0.05"][..],
         &["regions", &labelled],
@@ -100,6 +102,11 @@ fn every_output_fits_its_schema() {
         &["traffic", &layout, "--radius", "0.3", "--agents", "5"],
         &["traffic", &layout, "--radius", "0.3", "--agents", "3", "--hours", "0.01", "--compare"],
         &["traffic", &layout, "--missions", &day],
+        &[
+            &["traffic", &layout, "--radius", "0.3", "--agents", "3", "--active", "2", "--hours", "0.05"][..],
+            &["--closures", &closed, "--breakdowns", &broken],
+        ]
+        .concat(),
         &["nodes", &layout],
         &["nodes", &lif],
         &["nodes", &real("opendrive/Town02.planview.xodr")],
