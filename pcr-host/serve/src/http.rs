@@ -199,7 +199,7 @@ pub fn answer(handle: &ServerHandle, site: &HttpContent, request: &[u8]) -> (&'s
             let robots = supervisor.robots().iter();
             let views: Vec<RobotView<'_>> = robots.map(|robot| RobotView::new(supervisor, robot, now)).collect();
             json!({ "now": now, "counts": supervisor.counts(), "robots": views, "away": supervisor.away(),
-                "unplaced": supervisor.unplaced().map(|(name, why)| format!("{name} {why}")).collect::<Vec<_>>(), "events": board.events() }).to_string()
+                "unplaced": supervisor.unplaced().map(|(name, why)| format!("{name} {why}")).collect::<Vec<_>>(), "closures": supervisor.closures().collect::<Vec<_>>(), "events": board.events() }).to_string()
         }) {
             Some(text) => ("200 OK", "application/json", text),
             None => ended(),

@@ -2,6 +2,7 @@
 
 use crate::owned_path::{OwnedPath, PathRounding};
 use crate::robot::{Alarm, MissionFingerprint, PendingMission, RobotNotes, RobotTraits};
+use crate::supervisor::ClosedArea;
 use pcr_core::PassingState;
 use serde::{Deserialize, Serialize};
 use serde_json::Value;
@@ -173,6 +174,13 @@ pub enum JournalEntry {
         robot: String,
         /// Whether it is away.
         away: bool,
+    },
+    /// An area is closed. (Not in journals of version 3.)
+    Closed(ClosedArea),
+    /// An area is open again. (Not in journals of version 3.)
+    Opened {
+        /// Name of the area.
+        closure: String,
     },
     /// The alarm of a robot has begun, changed or ended.
     Alarm {

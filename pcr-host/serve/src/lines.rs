@@ -9,7 +9,7 @@ use crate::owned_path::StartPose;
 use crate::query::{self, Query};
 use crate::request_error::RequestError;
 use crate::robot::RobotTraits;
-use crate::supervisor::{MissionRequest, PositionReport, Supervisor};
+use crate::supervisor::{ClosedArea, MissionRequest, PositionReport, Supervisor};
 use crate::unanswered_lines::UnansweredLine;
 use pcr_formats::unique_keys::UniqueKeysJson;
 use serde::Deserialize;
@@ -39,6 +39,10 @@ enum Request {
     Remove(RobotRef),
     /// A robot is away, or no longer.
     Away(AbsenceReport),
+    /// An area is closed.
+    Close(ClosedArea),
+    /// An area is open again.
+    Open(ClosureRef),
     /// The position of a robot.
     Position(PositionReport),
     /// A robot is off its path.
@@ -70,6 +74,12 @@ struct AddRobot {
 #[serde(deny_unknown_fields)]
 struct RobotRef {
     robot: String,
+}
+
+#[derive(Clone, Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+struct ClosureRef {
+    closure: String,
 }
 
 #[derive(Clone, Debug, Deserialize)]
@@ -230,6 +240,8 @@ pub fn carry_out(supervisor: &mut Supervisor, request: RequestLine, came: f64, n
         Request::Away(AbsenceReport { robot, away }) => {
             supervisor.set_away(&robot, away).map(|keeps_place| json!({ "away": away, "keeps_place": keeps_place }))
         }
+        Request::Close(area) => supervisor.close(area).map(|impact| json!(impact)),
+        Request::Open(ClosureRef { closure }) => supervisor.open(&closure).map(|there| json!({ "opened": there })),
         Request::Position(report) => supervisor.position(&report, came).map(|()| json!({})),
         Request::Off(OffPathReport { robot, x, y, age }) => {
             supervisor.report_off_path(&robot, [x, y], age, came).map(|()| json!({}))

@@ -82,7 +82,7 @@ pub(crate) fn text(supervisor: &Supervisor, latency: &LatencyHistogram, bridge: 
         ("robots", "gauge", "Robots.", census.robots),
         ("robots_waiting", "gauge", "Robots whose mission is not admitted yet.", census.waiting),
         ("robots_alarmed", "gauge", "Robots that are not where they may be.", census.alarmed),
-        ("robots_stopped", "gauge", "Robots that had to stop for one of these.", census.stopped),
+        ("robots_stopped", "gauge", "Robots that had to stop for one of these, or for a closed area.", census.stopped),
         ("robots_silent", "gauge", "Robots that are not heard.", census.silent),
         ("regions", "gauge", "Collision regions of all paths.", supervisor.orders().ecm().len() as u64),
     ] {
@@ -102,6 +102,7 @@ pub(crate) fn text(supervisor: &Supervisor, latency: &LatencyHistogram, bridge: 
     let _ = writeln!(text, "{name}_bucket{{le=\"+Inf\"}} {count}\n{name}_sum {sum}\n{name}_count {count}");
     of_robots(&mut text, supervisor);
     of_absent(&mut text, supervisor);
+    of_closures(&mut text, supervisor);
     if let Some(bridge) = bridge {
         of_bridge(&mut text, bridge);
     }
@@ -115,7 +116,9 @@ fn of_robots(text: &mut String, supervisor: &Supervisor) {
     let gauges: [GaugeOfRobots; 4] = [
         ("waiting", "Whether its mission is not admitted yet.", |robot| robot.waiting.is_some()),
         ("alarmed", "Whether it is not where it may be.", |robot| robot.alarm.is_some()),
-        ("stopped", "Whether it has to stop for one that is not where it may be.", |robot| robot.stopped.is_some()),
+        ("stopped", "Whether it has to stop for one that is not where it may be, or for a closed area.", |robot| {
+            robot.stopped.is_some()
+        }),
         ("silent", "Whether it is not heard.", |robot| robot.silent),
     ];
     for (name, help, is) in gauges {
@@ -139,6 +142,18 @@ fn of_absent(text: &mut String, supervisor: &Supervisor) {
     let _ = writeln!(text, "# HELP {name} 1: it has not said where it stands.\n# TYPE {name} gauge");
     for (vehicle, why) in supervisor.unplaced() {
         let _ = writeln!(text, "{name}{{robot=\"{}\",why=\"{}\"}} 1", escaped(vehicle), escaped(why));
+    }
+}
+
+/// A line for each closed area.
+fn of_closures(text: &mut String, supervisor: &Supervisor) {
+    let (name, all) = ("pcr_closures", supervisor.closures().count());
+    let _ = writeln!(text, "# HELP {name} Areas that are closed.\n# TYPE {name} gauge\n{name} {all}");
+    let name = "pcr_closure";
+    let _ = writeln!(text, "# HELP {name} Number of robots that wait before a closed area.\n# TYPE {name} gauge");
+    for area in supervisor.closures() {
+        let waits = supervisor.robots().iter().filter(|robot| robot.closure.as_ref() == Some(&area.name)).count();
+        let _ = writeln!(text, "{name}{{closure=\"{}\"}} {waits}", escaped(&area.name));
     }
 }
 

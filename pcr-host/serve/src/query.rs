@@ -43,6 +43,8 @@ pub enum Query {
         /// End of the time to look at, from now \[s\].
         until: f64,
     },
+    /// The areas that are closed.
+    Closures {},
     /// Numbers of events since the start.
     Counts {},
 }
@@ -73,6 +75,9 @@ pub(crate) struct RobotView<'a> {
     alarm: Option<&'a Alarm>,
     #[serde(skip_serializing_if = "Option::is_none")]
     stopped_for: Option<&'a str>,
+    /// Closed area before which it waits.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    closure: Option<&'a str>,
     #[serde(skip_serializing_if = "std::ops::Not::not")]
     away: bool,
     silent: bool,
@@ -100,6 +105,7 @@ impl<'a> RobotView<'a> {
             waiting: robot.waiting.as_ref().map(|waiting| waiting.mission.as_str()),
             alarm: robot.alarm.as_ref(),
             stopped_for: robot.stopped.as_deref(),
+            closure: robot.closure.as_deref(),
             away: robot.away,
             silent: robot.silent,
             start: robot.course.start(),
@@ -185,6 +191,7 @@ pub fn answer(supervisor: &Supervisor, question: &Query, now: f64) -> Result<Val
             let safe = safe.map_err(RequestError::invalid)?.into_iter().map(|safe| [safe.lo, safe.hi]);
             Ok(json!({ "safe": safe.collect::<Vec<_>>() }))
         }
+        Query::Closures {} => Ok(json!({ "closures": supervisor.closures().collect::<Vec<_>>() })),
         Query::Counts {} => Ok(json!(supervisor.counts())),
     }
 }

@@ -269,6 +269,8 @@ pub struct SupervisedRobot {
     pub alarm: Option<Alarm>,
     /// The robot because of which it must stop, as that one may be anywhere near.
     pub stopped: Option<String>,
+    /// Name of the closed area before which it waits.
+    pub(crate) closure: Option<String>,
     /// Its waiting mission, if there is one.
     pub waiting: Option<PendingMission>,
     /// Whether a person has said that it is away.
@@ -319,6 +321,7 @@ impl SupervisedRobot {
             authority: None,
             alarm: None,
             stopped: None,
+            closure: None,
             waiting: None,
             away: false,
             returned: false,

@@ -7,6 +7,7 @@ mod absence;
 mod admission;
 mod alarms;
 mod authority;
+mod closures;
 mod deadlock_report;
 #[cfg(test)]
 mod outline_tests;
@@ -16,6 +17,7 @@ mod robot_notes;
 
 pub use absence::{StandingPlace, UnplacedVehicle};
 pub use admission::{AdmissionResult, MissionRequest};
+pub use closures::{ClosedArea, ClosureImpact};
 pub use positions::PositionReport;
 pub use restore::JournalError;
 
@@ -120,6 +122,8 @@ pub struct Supervisor {
     away: BTreeSet<String>,
     /// Vehicles that have not said where they stand.
     unplaced: BTreeMap<String, UnplacedVehicle>,
+    /// Areas that are closed, by name.
+    closures: BTreeMap<String, closures::ClosedPath>,
     /// Names of vehicles that may be away without being here.
     expected: BTreeSet<String>,
     /// Highest path number of any removed robot. New robots get higher numbers, so late messages of a removed robot with the same name are
@@ -161,6 +165,7 @@ impl Supervisor {
             census: 0,
             away: BTreeSet::new(),
             unplaced: BTreeMap::new(),
+            closures: BTreeMap::new(),
             expected: BTreeSet::new(),
             spent: 0,
             begun: None,
@@ -249,6 +254,9 @@ impl Supervisor {
         }
         if name.is_empty() || label(name) != name {
             return Err(RequestError::invalid("the name of a robot is 1 to 200 printable characters"));
+        }
+        if self.closures.contains_key(name) {
+            return Err(RequestError::invalid("a closed area has this name"));
         }
         let abilities = abilities.checked().map_err(RequestError::invalid)?;
         let returned = self.is_away(name);

@@ -3,6 +3,7 @@
 mod alarms;
 mod asked;
 mod away;
+mod closures;
 mod deploy;
 mod former;
 mod holds;

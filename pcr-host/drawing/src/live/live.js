@@ -61,9 +61,9 @@ function surface() {
 
 function draw() {
   const [c, width, height] = surface(), robots = state ? state.robots : [];
-  const lanes = layout.lanes.map(({ start, path }) => points({ start, shapes: path })), paths = robots.map(points);
+  const lanes = layout.lanes.map(({ start, path }) => points({ start, shapes: path })), paths = robots.map(points), closed = (state?.closures ?? []).map(({ start, path }) => points({ start, shapes: path }));
   const box = [Infinity, -Infinity, Infinity, -Infinity];
-  for (const [x, y] of [...lanes, ...paths].flat()) {
+  for (const [x, y] of [...lanes, ...closed, ...paths].flat()) {
     box[0] = Math.min(box[0], x); box[1] = Math.max(box[1], x); box[2] = Math.min(box[2], y); box[3] = Math.max(box[3], y);
   }
   if (!(box[0] <= box[1])) return;
@@ -75,6 +75,10 @@ function draw() {
   c.strokeStyle = theme.grid;
   c.lineWidth = 3;
   lanes.forEach(line);
+  c.strokeStyle = theme.hit;
+  c.globalAlpha = 0.25;
+  closed.forEach((all, k) => { c.lineWidth = Math.max(3, 2 * state.closures[k].radius * scale); line(all.length > 1 ? all : [all[0], all[0]]); });
+  c.globalAlpha = 1;
   const ego = $("ego").value, place = new Map();
   robots.forEach((robot, k) => {
     const colour = robot.alarm ? theme.hit : hue(k), all = paths[k];
@@ -140,6 +144,7 @@ function says(robot) {
   const all = [];
   if (robot.alarm) all.push({ off: "off its path", back: "gone back" }[robot.alarm.why] ?? "beyond its hold");
   if (robot.stopped_for) all.push(`stopped for ${robot.stopped_for}`);
+  if (robot.closure) all.push(`waits before ${robot.closure}`);
   if (robot.away) all.push("away, keeps its place");
   if (robot.silent) all.push("silent");
   if (robot.waits_for) all.push(`waits for ${robot.waits_for}`);
@@ -169,7 +174,7 @@ function show() {
   }
   const events = $("events"), texts = state.events.slice(-30).reverse().map(({ time, text }) => `${time.toFixed(1)} s: ${text}`);
   if (events.firstChild?.textContent !== texts[0]) events.replaceChildren(...texts.map((text) => Object.assign(document.createElement("li"), { textContent: text })));
-  const away = state.away.filter((name) => !known.includes(name)), waits = [...state.unplaced, ...away.map((name) => `${name} is away`)];
+  const away = state.away.filter((name) => !known.includes(name)), waits = [...state.unplaced, ...state.closures.map(({ closure }) => `${closure} is closed`), ...away.map((name) => `${name} is away`)];
   if ($("waits").textContent !== waits.join("; ")) $("waits").textContent = waits.join("; ");
   $("waits").className = state.unplaced.length ? "bad" : "";
   since ??= { now: state.now, admitted: state.counts.admitted };

@@ -80,6 +80,13 @@ pub(super) struct AdmissionRetry {
     pub(super) last: Option<AdmissionResult>,
 }
 
+impl AdmissionRetry {
+    /// Lets it be tried at once.
+    pub(super) fn hurry(&mut self) {
+        (self.next, self.pause) = (f64::NEG_INFINITY, PAUSE[0]);
+    }
+}
+
 /// Pause between two attempts \[s\]: the first one, and the largest.
 const PAUSE: [f64; 2] = [0.25, 2.0];
 
@@ -251,6 +258,11 @@ impl Supervisor {
         }
         let shifted = |length: f64| (length - dropped).max(0.0).min(course.length());
         let (at, told) = (shifted(robot.arc_length), shifted(robot.notified_limit));
+        if let Some(closure) = self.closed_on(&course, &body, at, told) {
+            let why = format!("{closure} is closed");
+            self.counts.refused += 1;
+            return Ok(Some(AdmissionResult::Waiting { by: None, why }));
+        }
         let own = Progress { at: Interval::new(at, told), stop: told };
         let motion = course.motion(&body).map_err(turning)?;
         let (mut progress, tolerances) = (self.progress(), self.tolerances());

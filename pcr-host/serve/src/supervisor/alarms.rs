@@ -17,11 +17,13 @@ pub(super) struct AlarmLimit {
 
 /// Because of whom a robot may go no further.
 #[derive(Clone, Copy, Debug)]
-enum LimitCause {
+pub(super) enum LimitCause {
     /// The robot with this index, which is not where it may be.
     Robot(usize),
     /// A vehicle that has not said where it stands, by its index among those.
     Unplaced(usize),
+    /// A closed area, by its index among those.
+    Closed(usize),
 }
 
 impl Default for LimitCause {
@@ -31,7 +33,7 @@ impl Default for LimitCause {
 }
 
 impl AlarmLimit {
-    fn lower(&mut self, at: f64, by: LimitCause) {
+    pub(super) fn lower(&mut self, at: f64, by: LimitCause) {
         if self.arc_length.is_none_or(|before| at < before) {
             *self = Self { arc_length: Some(at), by };
         }
@@ -44,12 +46,17 @@ impl Supervisor {
         if !self.hazards {
             return Vec::new();
         }
+        // A robot whose limit is no further than this beyond its hold waits for it \[m\].
+        let near = self.settings.step;
+        let by_it = |robot: &SupervisedRobot, at: f64| robot.granted >= at - near;
         let mut limits = vec![AlarmLimit::default(); self.robots.len()];
         self.lost(now, &mut limits);
         self.unordered(&mut limits);
         self.note_returned(now);
         self.unsaid(&mut limits);
+        self.closed_areas(&mut limits);
         self.hazards = self.robots.iter().any(|robot| robot.alarm.is_some())
+            || !self.closures.is_empty()
             || self.unplaced.values().any(|vehicle| !vehicle.places.is_empty());
         for (place, limit) in limits.iter().enumerate() {
             let robot = &self.robots[place];
@@ -60,7 +67,13 @@ impl Supervisor {
             let by = by.and_then(|_| match limit.by {
                 LimitCause::Robot(by) => Some(self.robots[by].name.clone()),
                 LimitCause::Unplaced(by) => self.unplaced.keys().nth(by).cloned(),
+                LimitCause::Closed(by) => self.closures.keys().nth(by).cloned(),
             });
+            // It waits there once it has come up to it.
+            let closure = match (limit.arc_length, limit.by) {
+                (Some(at), LimitCause::Closed(by)) if by_it(robot, at) => self.closures.keys().nth(by).cloned(),
+                _ => None,
+            };
             self.hazards |= by.is_some();
             let robot = &mut self.robots[place];
             let name = robot.name.clone();
@@ -70,6 +83,7 @@ impl Supervisor {
                 _ => {}
             }
             robot.stopped = by;
+            robot.closure = closure;
         }
         limits
     }

@@ -47,6 +47,10 @@ impl Supervisor {
             return;
         }
         let why = match (self.is_busy(robot), chain.iter().rev().nth(1)) {
+            _ if robot.closure.is_some() => {
+                let closure = robot.closure.as_deref().unwrap_or_default();
+                format!("{} waits before {closure}, which is closed", robot.name)
+            }
             (_, Some(&before)) if robot.away => {
                 format!(
                     "{} is away, and keeps its place until it is removed: {} waits for it",
@@ -99,6 +103,9 @@ impl Supervisor {
     /// The robot for which another one waits that has a task and may not go on.
     fn kept_by(&self, place: usize) -> Option<usize> {
         let robot = &self.robots[place];
+        if robot.closure.is_some() {
+            return None;
+        }
         if !robot.has_arrived(self.settings.position_uncertainty) {
             return robot.authority.filter(|_| self.is_held(place))?.waits_for.map(|(by, _)| by);
         }

@@ -1,11 +1,12 @@
 //! Restores a supervisor from its journal.
 
+use super::closures::ClosedPath;
 use super::{FleetPrecedences, Supervisor, SupervisorConfig, fleet, retry_with_growth};
 use crate::journal_entry::{JournalEntry, JournalStore, PageLayout, StoredPrecedence, StoredRobot};
 use crate::request_error::RequestError;
 use crate::robot::{Alarm, SupervisedRobot, remember};
 use pcr_core::{CheckState, MismatchError, PassingState};
-use std::collections::{BTreeSet, HashMap, HashSet};
+use std::collections::{BTreeMap, BTreeSet, HashMap, HashSet};
 use std::fmt;
 
 /// The reason why a journal cannot be continued.
@@ -33,6 +34,7 @@ struct RestoredState {
     robots: Vec<StoredRobot>,
     spent: u64,
     away: BTreeSet<String>,
+    closures: BTreeMap<String, ClosedPath>,
 }
 
 impl RestoredState {
@@ -94,6 +96,11 @@ impl RestoredState {
             }
             JournalEntry::Away { robot, away: true } => _ = self.away.insert(robot),
             JournalEntry::Away { robot, away: false } => _ = self.away.remove(&robot),
+            JournalEntry::Closed(area) => {
+                let closed = ClosedPath::new(area).map_err(|fault| JournalError(fault.to_string()))?;
+                self.closures.insert(closed.area.name.clone(), closed);
+            }
+            JournalEntry::Opened { closure } => _ = self.closures.remove(&closure),
             JournalEntry::Alarm { robot, alarm } => self.robot(&robot)?.alarm = alarm,
         }
         Ok(())
@@ -115,6 +122,7 @@ impl Supervisor {
         entries.into_iter().try_for_each(|entry| state.take(entry))?;
         let mut own = Self::new(settings, keeper);
         (own.layout, own.spent, own.away) = (state.layout, state.spent, state.away);
+        own.closures = state.closures;
         if own.spent >= MOST {
             return Err(JournalError("a number of a path that cannot be".into()));
         }
@@ -196,7 +204,8 @@ impl Supervisor {
         });
         let spent = (self.spent > 0).then_some(Ok(JournalEntry::Spent { path: self.spent }));
         let away = self.away.iter().map(|name| Ok(JournalEntry::Away { robot: name.clone(), away: true }));
-        layout.chain(spent).chain(robots).chain(away).collect()
+        let closed = self.closures().map(|area| Ok(JournalEntry::Closed(area.clone())));
+        layout.chain(spent).chain(robots).chain(away).chain(closed).collect()
     }
 }
 

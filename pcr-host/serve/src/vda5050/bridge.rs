@@ -1,7 +1,7 @@
 //! Connects all vehicles of a fleet with their manager and the supervisor. It only converts messages, and does no input
 //! or output itself.
 
-use super::vehicle_adapter::{OutboundMessage, Recipient, SendCondition, VehicleAdapter, VehicleConfig};
+use super::vehicle_adapter::{NoticeKind, OutboundMessage, Recipient, SendCondition, VehicleAdapter, VehicleConfig};
 use crate::bridge_status::BridgeCounters;
 use crate::event::SupervisorEvent;
 use crate::robot::SupervisedRobot;
@@ -81,7 +81,7 @@ pub struct Vda5050Bridge {
     /// Names of the vehicles that others wait for, with the time since which they do \[s\].
     unplaced: BTreeMap<String, f64>,
     /// What the manager was told of them, and the lanes that have to tell it.
-    notices: Vec<[String; 2]>,
+    notices: Vec<(NoticeKind, [String; 2])>,
     noticed: BTreeSet<usize>,
     /// When that was last other than before \[s\].
     noticed_at: f64,
@@ -284,8 +284,11 @@ impl Vda5050Bridge {
             // Nothing is released by what was decided before.
             supervisor.decide(now);
         }
-        let notices = supervisor.unplaced().take(NOTICES).map(|it| [it.0.to_owned(), it.1.to_owned()]);
-        let notices: Vec<[String; 2]> = notices.collect();
+        let unplaced = supervisor.unplaced().take(NOTICES);
+        let unplaced = unplaced.map(|it| (NoticeKind::Unplaced, [it.0.to_owned(), it.1.to_owned()]));
+        let closed = supervisor.closures().take(NOTICES);
+        let closed = closed.map(|area| (NoticeKind::Closed, [area.name.clone(), "is closed".to_owned()]));
+        let notices: Vec<(NoticeKind, [String; 2])> = unplaced.chain(closed).collect();
         if notices != self.notices && now.is_finite() && now >= self.noticed_at + PAUSE {
             self.noticed_at = now;
             for (place, lane) in self.lanes.iter_mut().enumerate() {

@@ -41,6 +41,15 @@ use std::sync::Arc;
 use used_ids::{NoteChange, UsedIds};
 use vehicle_messages::PositionSource;
 
+/// What a notice to the manager is about.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum NoticeKind {
+    /// A vehicle for which others wait.
+    Unplaced,
+    /// A closed area.
+    Closed,
+}
+
 /// The configuration of a vehicle.
 #[derive(Clone, Debug, PartialEq)]
 pub struct VehicleConfig {
@@ -136,7 +145,7 @@ pub struct VehicleAdapter {
     /// Whether it is away, as it was known last.
     is_away: bool,
     /// Vehicles for which others wait, and why.
-    notices: Vec<[String; 2]>,
+    notices: Vec<(NoticeKind, [String; 2])>,
     /// What is to be told of its orders in the log.
     remarks: Vec<String>,
 }

@@ -8,8 +8,9 @@ use pcr_formats::vda5050::topics::{TopicKind, VehicleId};
 use pcr_formats::vda5050::version::ProtocolVersion;
 use pcr_serve::event::SupervisorEvent;
 use pcr_serve::journal_entry::NullStore;
+use pcr_serve::owned_path::StartPose;
 use pcr_serve::robot::Alarm;
-use pcr_serve::supervisor::{StandingPlace, Supervisor};
+use pcr_serve::supervisor::{ClosedArea, StandingPlace, Supervisor};
 use pcr_serve::vda5050::bridge::{BridgeConfig, Vda5050Bridge};
 use pcr_serve::vda5050::vehicle_adapter::VehicleConfig;
 use pcr_serve::vehicles::simulated_site::profile;
@@ -149,6 +150,27 @@ impl Absence {
     fn unplaced(&self) -> Vec<String> {
         self.supervisor.unplaced().map(|(name, why)| format!("{name} {why}")).collect()
     }
+}
+
+/// A person closes an area by a line, and the manager and its vehicle see what follows.
+#[test]
+fn the_manager_is_told_what_is_closed_and_no_vehicle_is_released_into_it() {
+    let mut own = Absence::new(None, &[]);
+    own.supervisor.set_away("sim/2", true).unwrap();
+    own.stands("1", [0.0, 0.0]);
+    let start = StartPose { x: 5.0, y: 0.0, heading: 0.0 };
+    own.supervisor.close(ClosedArea { name: "gate".into(), start, path: Vec::new(), radius: 0.5 }).unwrap();
+    own.order("1", "a", 0.0, 10.0);
+    own.waits(3.0);
+    let errors = own.told["1"]["errors"].as_array().unwrap();
+    let closed: Vec<&Value> = errors.iter().filter(|error| error["errorType"] == "closed").collect();
+    assert!(closed.len() == 1 && closed[0]["errorDescription"] == "gate is closed", "{errors:?}");
+    assert!(own.granted("sim/1") < 5.0, "{}", own.granted("sim/1"));
+    own.supervisor.open("gate").unwrap();
+    own.waits(3.0);
+    let errors = own.told["1"]["errors"].as_array().unwrap();
+    assert!(errors.iter().all(|error| error["errorType"] != "closed"), "{errors:?}");
+    assert!(own.granted("sim/1") > 9.0, "{}", own.granted("sim/1"));
 }
 
 const NOBODY: &str =

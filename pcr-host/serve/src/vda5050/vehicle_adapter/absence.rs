@@ -1,7 +1,7 @@
 //! A vehicle that is away, or that others wait for because it has not said where it stands.
 
 use super::recency::RecencyFilter;
-use super::{PositionSource, VehicleAdapter};
+use super::{NoticeKind, PositionSource, VehicleAdapter};
 use crate::owned_path::StartPose;
 use crate::supervisor::{StandingPlace, Supervisor};
 use pcr_formats::vda5050::state::{ErrorEntry, VehiclePosition};
@@ -51,16 +51,20 @@ impl VehicleAdapter {
         self.profile.places.iter().map(|place| StandingPlace { radius: place.radius + room, ..*place }).collect()
     }
 
-    /// Tells the manager for whom others wait.
-    pub(crate) fn notice(&mut self, notices: Vec<[String; 2]>) {
+    /// Tells the manager for whom others wait, and what is closed: the kind of each, a name, and the rest of a sentence.
+    pub(crate) fn notice(&mut self, notices: Vec<(NoticeKind, [String; 2])>) {
         self.notices = notices;
         self.mirror();
     }
 
     /// The same as errors in states.
     pub(super) fn notice_errors(&self) -> impl Iterator<Item = ErrorEntry> {
-        let error = |[name, why]: &[String; 2]| {
-            ErrorEntry::warning("waitsForVehicle", format!("{name} {why}"), &[("vehicle", name)])
+        let error = |(kind, [name, why]): &(NoticeKind, [String; 2])| {
+            let (kind, reference) = match kind {
+                NoticeKind::Unplaced => ("waitsForVehicle", "vehicle"),
+                NoticeKind::Closed => ("closed", "closure"),
+            };
+            ErrorEntry::warning(kind, format!("{name} {why}"), &[(reference, name)])
         };
         self.notices.iter().map(error)
     }

@@ -1,0 +1,163 @@
+//! Areas that a person has closed: nobody gets authority into them, and no mission through them is admitted.
+//!
+//! An area is all that is within a distance of a path, so it can be an edge, a node, or a lane of any width. Whoever is in it for certain
+//! drives on. Whoever holds authority into it keeps that, and is stopped: if it comes to rest before the area it waits there, and if it cannot,
+//! it drives through as soon as it is in it.
+
+use super::Supervisor;
+use super::alarms::{AlarmLimit, LimitCause};
+use crate::journal_entry::JournalEntry;
+use crate::owned_path::{FAR, OwnedPath, PathElement, StartPose};
+use crate::request_error::RequestError;
+use crate::robot::{ROOM, SupervisedRobot};
+use pcr_core::{Ecm, Interval};
+use pcr_formats::scenario::label;
+use pcr_planning::fleet::ConvexBody;
+use serde::{Deserialize, Serialize};
+
+/// A closed area: all that is nearer to a path than its radius.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct ClosedArea {
+    /// Its name, which no robot has.
+    #[serde(rename = "closure")]
+    pub name: String,
+    /// Where the path begins.
+    pub start: StartPose,
+    /// Its lines and arcs; none for the disc around the start.
+    #[serde(default)]
+    pub path: Vec<PathElement>,
+    /// \[m\]
+    pub radius: f64,
+}
+
+/// What an area that is being closed means to the robots there.
+#[derive(Clone, Debug, Default, PartialEq, Serialize)]
+pub struct ClosureImpact {
+    /// Robots that are in it, and drive on.
+    pub through: Vec<String>,
+    /// Robots that hold authority into it, and are stopped if they move.
+    pub stopped: Vec<String>,
+    /// Robots whose paths lead into it; they get authority up to it.
+    pub before: Vec<String>,
+}
+
+/// A closed area with its path.
+#[derive(Clone, Debug)]
+pub(super) struct ClosedPath {
+    pub(super) area: ClosedArea,
+    course: OwnedPath,
+}
+
+impl ClosedPath {
+    pub(super) fn new(area: ClosedArea) -> Result<Self, RequestError> {
+        if area.name.is_empty() || label(&area.name) != area.name {
+            return Err(RequestError::invalid("closure: the name of an area is 1 to 200 printable characters"));
+        }
+        if !(area.radius > 0.0 && area.radius <= FAR) {
+            return Err(RequestError::invalid(format!("radius: above 0, up to {FAR} m is allowed")));
+        }
+        let course = OwnedPath::new(area.start, area.path.clone()).map_err(RequestError::invalid)?;
+        course.motion(&ConvexBody::Disc(area.radius)).map_err(RequestError::invalid)?;
+        Ok(Self { area, course })
+    }
+
+    /// The lengths of a path on which a body touches the area; `None` if they cannot be computed.
+    pub(super) fn lengths(&self, course: &OwnedPath, body: &ConvexBody) -> Option<Vec<Interval<f64>>> {
+        let disc = ConvexBody::Disc(self.area.radius);
+        let fleet = [course.motion(body).ok()?, self.course.motion(&disc).ok()?];
+        let ecm = Ecm::grown(&fleet).ok()?;
+        Some(ecm.pair(&fleet, 0, 1).ok()?.map(|region| region.length()).collect())
+    }
+
+    /// The length of a robot's path at which it would come into the area, from where it is; `None` if it never does, or if it is in it.
+    /// Whatever cannot be computed is as near as the robot.
+    fn entry(&self, robot: &SupervisedRobot) -> Option<f64> {
+        let Some(lengths) = self.lengths(&robot.course, &robot.body) else { return Some(robot.arc_length) };
+        let ahead = lengths.iter().filter(|length| length.lo > robot.arc_length);
+        ahead.map(|length| length.lo).reduce(f64::min)
+    }
+
+    /// Whether a robot is in the area, as far as it has certainly come.
+    fn contains(&self, robot: &SupervisedRobot) -> bool {
+        let lengths = self.lengths(&robot.course, &robot.body).unwrap_or_default();
+        lengths.iter().any(|length| length.lo <= robot.arc_length && robot.arc_length <= length.hi)
+    }
+}
+
+impl Supervisor {
+    /// Closes an area until it is [opened](Supervisor::open). Closing it again changes nothing.
+    ///
+    /// # Errors
+    /// [`RequestError::Invalid`] for a name that a robot or another area has, and for a path or radius out of range; [`RequestError::Broken`].
+    pub fn close(&mut self, area: ClosedArea) -> Result<ClosureImpact, RequestError> {
+        self.works()?;
+        if self.names.contains_key(&area.name) {
+            return Err(RequestError::invalid("closure: a robot has this name"));
+        }
+        let closed = ClosedPath::new(area)?;
+        match self.closures.get(&closed.area.name) {
+            Some(known) if known.area == closed.area => {}
+            Some(_) => {
+                return Err(RequestError::invalid("closure: another area of this name is closed; open it first"));
+            }
+            None => {
+                self.entries.push(JournalEntry::Closed(closed.area.clone()));
+                self.closures.insert(closed.area.name.clone(), closed.clone());
+                self.hazards = true;
+            }
+        }
+        let mut impact = ClosureImpact::default();
+        for robot in &self.robots {
+            let list = match closed.entry(robot) {
+                _ if closed.contains(robot) => &mut impact.through,
+                Some(entry) if entry < robot.notified_limit => &mut impact.stopped,
+                Some(_) => &mut impact.before,
+                None => continue,
+            };
+            list.push(robot.name.clone());
+        }
+        Ok(impact)
+    }
+
+    /// Opens an area again. Returns `false` if there is none of this name.
+    ///
+    /// # Errors
+    /// [`RequestError::Broken`].
+    pub fn open(&mut self, name: &str) -> Result<bool, RequestError> {
+        self.works()?;
+        if self.closures.remove(name).is_none() {
+            return Ok(false);
+        }
+        self.entries.push(JournalEntry::Opened { closure: name.into() });
+        self.hazards = true;
+        // Missions that have waited for it are tried now.
+        self.tries.values_mut().for_each(super::admission::AdmissionRetry::hurry);
+        Ok(true)
+    }
+
+    /// The closed areas, by name.
+    pub fn closures(&self) -> impl Iterator<Item = &ClosedArea> {
+        self.closures.values().map(|closed| &closed.area)
+    }
+
+    /// The first closed area into which a path leads beyond what a robot has been allowed already, except where the robot is in it.
+    pub(super) fn closed_on(&self, course: &OwnedPath, body: &ConvexBody, at: f64, told: f64) -> Option<&str> {
+        let leads_into = |closed: &&ClosedPath| match closed.lengths(course, body) {
+            Some(lengths) => lengths.iter().any(|length| length.lo > at && length.lo >= told - ROOM),
+            None => true,
+        };
+        self.closures.values().find(leads_into).map(|closed| closed.area.name.as_str())
+    }
+
+    /// Limits because of closed areas.
+    pub(super) fn closed_areas(&self, limits: &mut [AlarmLimit]) {
+        for (index, closed) in self.closures.values().enumerate() {
+            for (robot, limit) in self.robots.iter().zip(limits.iter_mut()) {
+                if let Some(entry) = closed.entry(robot) {
+                    limit.lower(entry - ROOM, LimitCause::Closed(index));
+                }
+            }
+        }
+    }
+}

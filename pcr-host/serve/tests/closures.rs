@@ -1,0 +1,228 @@
+//! Closed areas: nobody gets authority into them, whoever has it is stopped where it still can, and whoever is inside drives on.
+
+use crate::lines::{document, fits};
+use crate::world::Disc;
+use pcr_formats::splitmix64::SplitMix64;
+use pcr_serve::event::SupervisorEvent;
+use pcr_serve::lines::handle;
+use pcr_serve::owned_path::{PathElement, StartPose};
+use pcr_serve::request_error::RequestError;
+use pcr_serve::robot::RobotTraits;
+use pcr_serve::supervisor::{
+    AdmissionResult, ClosedArea, MissionRequest, PositionReport, Supervisor, SupervisorConfig,
+};
+use serde_json::{Value, json};
+
+const ABILITIES: RobotTraits =
+    RobotTraits { radius: 0.25, footprint: None, margin: 0.0, speed: 1.0, acceleration: 0.5 };
+
+fn straight(mission: &str, length: f64) -> MissionRequest {
+    let path = vec![PathElement::Line { length }];
+    let (robot, mission) = ("east".into(), mission.into());
+    MissionRequest { robot, mission, after: None, expected_path: None, any_heading: false, start: None, path }
+}
+
+/// One that stands at x = -5 m and faces east.
+fn one(disc: &Disc) -> Supervisor {
+    let mut own = Supervisor::new(SupervisorConfig::default(), Box::new(disc.clone()));
+    own.add("east", ABILITIES, StartPose { x: -5.0, y: 0.0, heading: 0.0 }).unwrap();
+    own
+}
+
+/// A lane across the way of that robot.
+fn area(x: f64, radius: f64) -> ClosedArea {
+    let start = StartPose { x, y: -2.0, heading: std::f64::consts::FRAC_PI_2 };
+    ClosedArea { name: "aisle 3".into(), start, path: vec![PathElement::Line { length: 4.0 }], radius }
+}
+
+fn names(events: &[SupervisorEvent]) -> Vec<String> {
+    let kind = |event| serde_json::to_value(event).unwrap()["event"].as_str().unwrap().to_owned();
+    events.iter().map(kind).collect()
+}
+
+fn is_at(own: &mut Supervisor, at: f64, now: f64) -> Vec<SupervisorEvent> {
+    let report = PositionReport { robot: "east".into(), path: own.robot("east").unwrap().path, at: [at; 2], age: 0.0 };
+    own.position(&report, now).unwrap();
+    own.settle(now).unwrap()
+}
+
+/// Goes where it may go, as far as it may go.
+fn goes(own: &mut Supervisor, from: f64) -> f64 {
+    let mut now = from;
+    loop {
+        let robot = own.robot("east").unwrap();
+        let (at, hold) = (robot.arc_length, robot.granted);
+        if hold - at < 1e-3 || robot.stopped.is_some() {
+            return at;
+        }
+        now += 1.0;
+        is_at(own, hold, now);
+    }
+}
+
+#[test]
+fn nobody_gets_authority_into_a_closed_area_until_it_is_opened() {
+    let disc = Disc::new();
+    let mut own = one(&disc);
+    own.mission(&straight("1", 10.0), 0.0).unwrap();
+    let impact = own.close(area(0.0, 0.5)).unwrap();
+    assert_eq!((impact.before, impact.stopped.len(), impact.through.len()), (vec!["east".to_owned()], 0, 0));
+    own.settle(0.0).unwrap();
+    // The lane begins at x = -0.5 m, for a robot of 0.25 m.
+    let at = goes(&mut own, 0.0);
+    assert!((4.25 - 0.01..=4.25).contains(&at), "{at}");
+    let told = handle(&mut own, br#"{"verb": "query", "what": "robots"}"#, 20.0, 20.0).answer;
+    assert_eq!(told["ok"]["robots"][0]["closure"], "aisle 3");
+    // After a minute it is said why it stands.
+    let events: Vec<SupervisorEvent> = (20..90).flat_map(|now| is_at(&mut own, at, f64::from(now))).collect();
+    let why = "east waits before aisle 3, which is closed";
+    assert!(
+        events.iter().any(|event| matches!(event, SupervisorEvent::Standstill { why: told, .. } if told == why)),
+        "{events:?}"
+    );
+    // A restart keeps it closed.
+    drop(own);
+    let mut own = Supervisor::restored(SupervisorConfig::default(), disc.entries(), Box::new(disc.clone())).unwrap();
+    own.settle(121.0).unwrap();
+    assert_eq!(own.closures().map(|area| area.name.as_str()).collect::<Vec<_>>(), ["aisle 3"]);
+    assert!(goes(&mut own, 130.0) <= 4.25);
+    assert!(own.open("aisle 3").unwrap() && !own.open("aisle 3").unwrap());
+    own.settle(150.0).unwrap();
+    assert!(goes(&mut own, 150.0) > 9.99);
+    drop(own);
+    let own = Supervisor::restored(SupervisorConfig::default(), disc.entries(), Box::new(disc)).unwrap();
+    assert_eq!(own.closures().count(), 0);
+}
+
+#[test]
+fn whoever_holds_authority_into_it_is_stopped_and_drives_on_once_it_is_inside() {
+    let [stands, enters] = [3.9, 4.6];
+    for at in [stands, enters] {
+        let mut own = one(&Disc::new());
+        own.mission(&straight("1", 10.0), 0.0).unwrap();
+        own.settle(0.0).unwrap();
+        is_at(&mut own, 3.0, 3.0);
+        let hold = own.robot("east").unwrap().granted;
+        assert!(hold > 4.5, "{hold}");
+        assert_eq!(own.close(area(0.0, 0.5)).unwrap().stopped, ["east"]);
+        assert_eq!(names(&own.settle(3.1).unwrap()), ["stop"]);
+        assert_eq!(own.robot("east").unwrap().stopped.as_deref(), Some("aisle 3"));
+        // It keeps what it has, and gets no more.
+        assert_eq!(own.robot("east").unwrap().granted, hold);
+        let events = names(&is_at(&mut own, at, 4.0));
+        if at == stands {
+            assert_eq!((events.len(), own.robot("east").unwrap().granted), (0, hold));
+            own.open("aisle 3").unwrap();
+            let events = names(&own.settle(5.0).unwrap());
+            assert!(events.contains(&"go".to_owned()), "{events:?}");
+        } else {
+            assert!(events.contains(&"go".to_owned()), "{events:?}");
+            let again = own.close(area(0.0, 0.5)).unwrap();
+            assert_eq!((again.through, again.stopped.len()), (vec!["east".to_owned()], 0));
+        }
+        assert!(goes(&mut own, 10.0) > 9.99, "{at}");
+    }
+}
+
+#[test]
+fn a_mission_through_a_closed_area_waits_until_it_is_open() {
+    let mut own = one(&Disc::new());
+    own.close(area(0.0, 0.5)).unwrap();
+    let verdict = own.mission(&straight("1", 10.0), 0.0).unwrap();
+    assert_eq!(verdict, AdmissionResult::Waiting { by: None, why: "aisle 3 is closed".into() });
+    // One that ends before it is admitted.
+    let verdict = own.mission(&straight("2", 4.0), 0.0).unwrap();
+    assert!(matches!(verdict, AdmissionResult::Admitted { .. }), "{verdict:?}");
+    own.settle(0.0).unwrap();
+    let verdict = own.mission(&straight("3", 6.0), 1.0).unwrap();
+    assert!(matches!(verdict, AdmissionResult::Waiting { by: None, .. }), "{verdict:?}");
+    for tick in 0..40 {
+        own.settle(1.0 + 0.1 * f64::from(tick)).unwrap();
+    }
+    assert_eq!(own.robot("east").unwrap().mission.as_deref(), Some("2"));
+    own.open("aisle 3").unwrap();
+    own.settle(5.01).unwrap();
+    assert_eq!(own.robot("east").unwrap().mission.as_deref(), Some("3"));
+}
+
+/// Wherever and whenever an area is closed: the authority of who is not in it does not grow into it.
+#[test]
+fn authority_does_not_grow_into_areas_at_random() {
+    let (mut stopped, mut through) = (0, 0);
+    for seed in 0..200 {
+        let mut dice = SplitMix64(seed);
+        let mut own = one(&Disc::new());
+        own.mission(&straight("1", 10.0), 0.0).unwrap();
+        own.settle(0.0).unwrap();
+        let (x, radius, from) = (-4.0 + 8.0 * dice.unit(), 0.1 + dice.unit(), 20.0 * dice.unit());
+        // The robot touches the lane from here on.
+        let lo = x + 5.0 - radius - 0.25;
+        let (mut at, mut before) = (0.0, None);
+        for tick in 1..60 {
+            let now = 0.5 * f64::from(tick);
+            if before.is_none() && now >= from {
+                let impact = own.close(area(x, radius)).unwrap();
+                (stopped, through) = (stopped + impact.stopped.len(), through + impact.through.len());
+                before = Some((own.robot("east").unwrap().granted, at));
+                own.settle(now).unwrap();
+            }
+            let robot = own.robot("east").unwrap();
+            if robot.stopped.is_none() {
+                at += (0.4 * dice.unit()).min(robot.granted - at).max(0.0);
+            }
+            is_at(&mut own, at, now);
+            let granted = own.robot("east").unwrap().granted;
+            if let Some((held, _)) = before.filter(|_| at < lo - 1e-3) {
+                assert!(granted <= f64::max(held, lo), "{seed}: {granted} at {at}, from {lo} m on it is closed");
+            }
+        }
+        let was_inside = before.is_some_and(|(_, at)| at > lo + 1e-3);
+        if was_inside {
+            assert!(at > 9.0, "{seed}: {at}, although it was inside");
+        } else if before.is_some() {
+            assert!(at <= lo, "{seed}: {at}");
+        }
+    }
+    assert!(stopped > 5 && through > 5, "{stopped}, {through}");
+}
+
+#[test]
+fn the_verbs_fit_the_schema_and_what_is_wrong_is_refused() {
+    let schema: Value = serde_json::from_str(&document("reference/schema/pcr-serve.schema.json")).unwrap();
+    let mut own = one(&Disc::new());
+    let mut ask = |request: Value, is_right: bool| {
+        if is_right {
+            fits(&schema, &request);
+        }
+        let answer = handle(&mut own, request.to_string().as_bytes(), 0.0, 0.0).answer;
+        fits(&schema, &answer);
+        answer
+    };
+    let start = json!({ "x": 1, "y": 0, "heading_deg": 90 });
+    let close = json!({ "verb": "close", "closure": "bay", "start": start, "radius": 0.3 });
+    let answer = ask(close.clone(), true);
+    assert_eq!(answer["ok"], json!({ "through": [], "stopped": [], "before": [] }));
+    assert_eq!(ask(close.clone(), true), answer, "repeated");
+    let told = ask(json!({ "verb": "query", "what": "closures" }), true);
+    let [found] = &told["ok"]["closures"].as_array().unwrap()[..] else { panic!("{told}") };
+    assert_eq!((&found["closure"], &found["radius"]), (&json!("bay"), &json!(0.3)));
+    let with = |key: &str, value: Value| {
+        let mut other = close.clone();
+        other[key] = value;
+        other
+    };
+    for (key, value, why) in [
+        ("radius", json!(0), "radius: above 0"),
+        ("radius", json!(0.4), "closure: another area of this name is closed"),
+        ("closure", json!("east"), "closure: a robot has this name"),
+        ("closure", json!(""), "closure: the name of an area"),
+    ] {
+        let answer = ask(with(key, value), false);
+        assert!(answer["error"]["message"].as_str().unwrap().starts_with(why), "{answer}");
+    }
+    assert_eq!(ask(json!({ "verb": "open", "closure": "bay" }), true)["ok"]["opened"], true);
+    assert_eq!(ask(json!({ "verb": "open", "closure": "bay" }), true)["ok"]["opened"], false);
+    own.close(area(0.0, 0.5)).unwrap();
+    let pose = StartPose { x: 9.0, y: 0.0, heading: 0.0 };
+    assert!(matches!(own.add("aisle 3", ABILITIES, pose), Err(RequestError::Invalid { .. })));
+}
