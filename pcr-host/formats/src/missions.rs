@@ -256,10 +256,11 @@ fn kind_of(record: &Record<'_>, usual: RecordKind) -> Result<RecordKind, Mission
     found.ok_or_else(|| MissionFileError { position, problem: problem() })
 }
 
+/// The index of a file, and a record of it with its kind.
+type FileRecord<'t> = (usize, RecordKind, Record<'t>);
+
 /// The records of some files, each with the index of its file.
-fn all_records<'t>(
-    sources: &[MissionSource<'t>],
-) -> Result<Vec<(usize, RecordKind, Record<'t>)>, (usize, MissionFileError)> {
+fn all_records<'t>(sources: &[MissionSource<'t>]) -> Result<Vec<FileRecord<'t>>, (usize, MissionFileError)> {
     let mut all = Vec::new();
     for (file, source) in sources.iter().enumerate() {
         let records = records::parse(source.text).map_err(|error| (file, error))?;

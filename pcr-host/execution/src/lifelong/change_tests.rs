@@ -84,7 +84,7 @@ fn changes(imported: &ImportedLayout, robots: usize, duration: f64, seed: u64) -
     let (layout, mut random) = (&imported.layout, SplitMix64(seed));
     let mut time = |k: usize| {
         let at = duration * random.unit();
-        (at, (k % 3 > 0).then(|| at + 1.0 + 0.3 * duration * random.unit()))
+        (at, (!k.is_multiple_of(3)).then(|| at + 1.0 + 0.3 * duration * random.unit()))
     };
     let times: Vec<_> = (0..9).map(&mut time).collect();
     let closures = times[..6].iter().enumerate().map(|(k, &(at, until))| {
