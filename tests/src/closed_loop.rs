@@ -144,9 +144,9 @@ fn back(agent: &Agent) -> SpeedLimitedPath {
         pose = [x, y, placed.heading_at_end()];
     }
     let turned = agent.path.iter().rev().map(|segment| match *segment {
-        PathSegment::Cusp => panic!("a change of gear"),
         PathSegment::Arc { radius, sweep } => PathSegment::Arc { radius, sweep: -sweep },
-        line => line,
+        PathSegment::Line { .. } => *segment,
+        _ => panic!("{segment:?}"),
     });
     let start = Pose { position: Point::new(pose[0], pose[1]), heading: Radians(pose[2] + PI) };
     SpeedLimitedPath::new(start, &turned.collect::<Vec<_>>()).expect("a path that is in range")

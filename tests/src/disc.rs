@@ -101,11 +101,11 @@ impl Disc {
         for segment in &agent.path {
             match *segment {
                 PathSegment::Line { length } => legs.push(Leg::Line(length)),
-                PathSegment::Cusp => panic!("a change of gear"),
                 PathSegment::Arc { radius, sweep } => {
                     let turns = (sweep.abs() / TAU).ceil().max(1.0);
                     legs.extend(std::iter::repeat_n(Leg::arc(radius, sweep / turns), turns as usize));
                 }
+                _ => panic!("{segment:?}"),
             }
         }
         Self { radius: agent.radius, start: agent.start, legs }
@@ -156,7 +156,10 @@ impl Drive {
     pub fn of_agent(agent: &Agent) -> Self {
         match &agent.motion {
             MotionSpec::RestToRest { v_max, a_max } => Self::Limits(*v_max, *a_max),
-            MotionSpec::Profile { v0, pieces } => Self::Pieces(*v0, pieces.clone()),
+            MotionSpec::Profile { .. } => {
+                let (v0, pieces) = agent.motion.pieces(agent.length());
+                Self::Pieces(v0, pieces)
+            }
         }
     }
 

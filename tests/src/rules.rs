@@ -408,8 +408,8 @@ fn agent(vehicle: &Vehicle, radius: f64) -> RawAgent {
         let length = piece.shape.length();
         let turn = heading.map(|heading| piece.heading - heading).filter(|turn| *turn != 0.0);
         let bend = match piece.shape {
-            PathSegment::Line { .. } | PathSegment::Cusp => None,
             PathSegment::Arc { radius, sweep } => Some(radius * sweep.signum()),
+            _ => None,
         };
         let turns = turn.map(RawAngle::Radians).into_iter().collect();
         segments.push(RawSegment { length, radius: bend, turns, from: total, to: total + length });
@@ -434,8 +434,8 @@ fn bounds(curve: &[PlacedSegment], radius: f64) -> [[f64; 2]; 2] {
     for piece in curve {
         // No point of a piece is farther from where it begins than its length.
         let room = match piece.shape {
-            PathSegment::Line { .. } | PathSegment::Cusp => 0.0,
             PathSegment::Arc { .. } => piece.shape.length(),
+            _ => 0.0,
         };
         for point in [piece.start, piece.end()] {
             for x in 0..2 {

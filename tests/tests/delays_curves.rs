@@ -69,7 +69,7 @@ fn fleet(imported: &ImportedLayout, driving: EdgeDriving) -> Fleet<f64> {
                 }
             }
             let motion = match driving.acceleration {
-                None => MotionSpec::Profile { v0: speed, pieces: vec![(agent.length() / speed, 0.0)] },
+                None => MotionSpec::profile(speed, [(agent.length() / speed, 0.0)]),
                 Some(a_max) if matches!(agent.path[..], [PathSegment::Line { .. }]) => {
                     MotionSpec::RestToRest { v_max: speed, a_max }
                 }

@@ -47,12 +47,61 @@ fn reverse(mut segment: Value) -> Value {
     segment
 }
 
-/// The polygon of a vehicle at a length of its path, from the path of the scenario alone.
-fn placed(polygon: &[Point], agent: &Agent, length: f64) -> Polygon {
+/// The polygons of a vehicle at a length of its path, from the path of the scenario alone: many where it turns in place there.
+fn placed(polygon: &[Point], agent: &Agent, length: f64) -> Vec<Polygon> {
+    const POSES: u32 = 64;
+    let at = |share: f64| {
+        let (mut rest, mut before) = (length, 0.0);
+        let ways = agent.path.iter().map(|segment| {
+            let own = rest.clamp(0.0, segment.length());
+            rest -= own;
+            before += segment.length();
+            if !segment.takes_turning() {
+                return own;
+            }
+            let share = if rest > 0.0 {
+                1.0
+            } else if before == length {
+                share
+            } else {
+                0.0
+            };
+            share * segment.sweep().abs()
+        });
+        after(polygon, agent, &ways.collect::<Vec<_>>())
+    };
+    let mut from = 0.0;
+    let turns = agent.path.iter().any(|segment| {
+        from += segment.length();
+        segment.takes_turning() && from == length
+    });
+    if turns { (0..=POSES).map(|k| at(f64::from(k) / f64::from(POSES))).collect() } else { vec![at(0.0)] }
+}
+
+/// The least distance of some polygons from another one.
+fn least(polygons: &[Polygon], other: &Polygon) -> f64 {
+    polygons.iter().map(|polygon| apart(polygon, other)).fold(f64::INFINITY, f64::min)
+}
+
+/// The polygon of a vehicle at a time, from the motion of the scenario alone.
+fn placed_at(polygon: &[Point], agent: &Agent, time: f64) -> Polygon {
+    let mut rest = time - agent.t_start;
+    let ways = agent.parts().into_iter().map(|phases| {
+        let way = phases.iter().map(|phase| {
+            let own = rest.clamp(0.0, phase.duration);
+            rest -= own;
+            phase.before * own + 0.5 * phase.acceleration() * own * own
+        });
+        way.sum()
+    });
+    after(polygon, agent, &ways.collect::<Vec<_>>())
+}
+
+/// The polygon of a vehicle that has come so far on each of its segments \[m\], of turns in place \[rad\].
+fn after(polygon: &[Point], agent: &Agent, ways: &[f64]) -> Polygon {
     let [mut x, mut y, mut heading] = agent.start;
-    let (mut rest, mut gear) = (length, 1.0);
-    for segment in &agent.path {
-        let own = rest.clamp(0.0, segment.length());
+    let mut gear = 1.0;
+    for (segment, &own) in agent.path.iter().zip(ways) {
         match *segment {
             // At the change itself it does not matter.
             PathSegment::Cusp => gear = -gear,
@@ -68,8 +117,9 @@ fn placed(polygon: &[Point], agent: &Agent, length: f64) -> Polygon {
                 y -= side * (after.cos() - heading.cos());
                 heading = after;
             }
+            PathSegment::Turn { sweep } => heading += own.copysign(sweep),
+            PathSegment::Kink { .. } => panic!("{segment:?}"),
         }
-        rest -= own;
     }
     polygons::placed(polygon, [x, y], heading)
 }
@@ -110,13 +160,12 @@ fn compare_in<S: HostScalar>(agents: &[Value], polygons: [&[Point]; 2], slack: f
         // At the times of the slices of each region, that of all regions then.
         for region in &regions {
             for slice in region.slices.iter().flatten() {
-                let there = them.length_at(slice.t);
-                let far = placed(polygons[other], &scenario.agents[other], there);
-                let inner = placed(&smaller[other], &scenario.agents[other], there);
+                let far = placed_at(polygons[other], &scenario.agents[other], slice.t);
+                let inner = placed_at(&smaller[other], &scenario.agents[other], slice.t);
                 for step in 0..=LENGTHS {
                     let length = scenario.agents[own].length() * (step as f64 / LENGTHS as f64);
                     let here = |polygon: &[Point]| placed(polygon, &scenario.agents[own], length);
-                    let distance = apart(&here(polygons[own]), &far);
+                    let distance = least(&here(polygons[own]), &far);
                     let in_slice = |by: f64| slice.l.iter().any(|[lo, hi]| within([lo - by, hi + by], length));
                     // On a turn in place, a whole turn is no longer than what the format may lose.
                     let covered = in_slice(lost);
@@ -127,7 +176,7 @@ fn compare_in<S: HostScalar>(agents: &[Value], polygons: [&[Point]; 2], slack: f
                     let alone = others.clone().all(|other| {
                         !within(other.t, slice.t) || !within([other.l[0] - lost, other.l[1] + lost], length)
                     });
-                    let is_free = || apart(&here(&smaller[own]), &inner) > 0.0;
+                    let is_free = || least(&here(&smaller[own]), &inner) > 0.0;
                     assert!(covered || !alone || is_free(), "{} t {} l {length}: not covered", S::NAME, slice.t);
                     counts[usize::from(distance > 0.0)] += 1;
                 }
@@ -137,10 +186,10 @@ fn compare_in<S: HostScalar>(agents: &[Value], polygons: [&[Point]; 2], slack: f
         let time = them.time();
         for step in 0..=120 {
             let t = time.lo + (time.hi - time.lo) * f64::from(step) / 120.0;
-            let far = placed(&smaller[other], &scenario.agents[other], them.length_at(t));
+            let far = placed_at(&smaller[other], &scenario.agents[other], t);
             for step in 0..=LENGTHS {
                 let length = scenario.agents[own].length() * (step as f64 / LENGTHS as f64);
-                if apart(&placed(&smaller[own], &scenario.agents[own], length), &far) == 0.0 {
+                if least(&placed(&smaller[own], &scenario.agents[own], length), &far) == 0.0 {
                     // With fewer digits the other agent may arrive a little earlier.
                     let there = |region: &RegionEntry| within(region.t, t) || (region.open_end && t > region.t[1]);
                     let inside = regions
@@ -164,7 +213,7 @@ fn conflicts<S: HostScalar>(
 ) {
     let verdict = CheckReport::compute::<S>(scenario, true).unwrap();
     let between = |polygons: [&[Point]; 2], t: f64| {
-        let [a, b] = [0, 1].map(|k| placed(polygons[k], &scenario.agents[k], motions[k].length_at(t)));
+        let [a, b] = [0, 1].map(|k| placed_at(polygons[k], &scenario.agents[k], t));
         apart(&a, &b)
     };
     let end = motions.iter().map(|motion| motion.time().hi).fold(0.0, f64::max);

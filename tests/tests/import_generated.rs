@@ -283,8 +283,8 @@ fn points(pieces: &[PlacedSegment]) -> Vec<Point> {
     let mut corners: Vec<Point> = pieces.first().map(|first| first.start).into_iter().collect();
     for piece in pieces {
         let count = match piece.shape {
-            PathSegment::Line { .. } | PathSegment::Cusp => 1,
             PathSegment::Arc { .. } => 4,
+            _ => 1,
         };
         let length = piece.shape.length();
         corners.extend((1..=count).map(|k| piece.part(0.0, length * f64::from(k) / f64::from(count)).end()));

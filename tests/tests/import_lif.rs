@@ -66,7 +66,7 @@ fn trajectories_become_arcs_within_the_tolerance() {
         assert!(edge.deviation > 0.0 && edge.deviation <= tolerance);
         let radii = edge.curve.iter().filter_map(|piece| match piece.shape {
             PathSegment::Arc { radius, .. } => Some(radius),
-            PathSegment::Line { .. } | PathSegment::Cusp => None,
+            _ => None,
         });
         let radii: Vec<f64> = radii.collect();
         assert_eq!(radii.len(), edge.curve.len());

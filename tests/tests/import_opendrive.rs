@@ -193,10 +193,10 @@ fn place(curve: &[PlacedSegment], length: f64) -> [f64; 2] {
     for piece in curve {
         if rest < piece.shape.length() {
             let shape = match piece.shape {
-                PathSegment::Line { .. } | PathSegment::Cusp => PathSegment::Line { length: rest },
                 PathSegment::Arc { radius, sweep } => {
                     PathSegment::Arc { radius, sweep: (rest / radius).copysign(sweep) }
                 }
+                _ => PathSegment::Line { length: rest },
             };
             return PlacedSegment { shape, ..*piece }.end();
         }
@@ -221,8 +221,8 @@ fn open_joints_are_closed_and_count_as_deviation_along_and_across() {
     let written = records.map(|PlacedSegment { start: [x, y], heading, shape }| {
         let length = shape.length();
         let shape = match shape {
-            PathSegment::Line { .. } | PathSegment::Cusp => "<line/>".to_owned(),
             PathSegment::Arc { radius, sweep } => format!("<arc curvature=\"{}\"/>", sweep.signum() / radius),
+            _ => "<line/>".to_owned(),
         };
         format!("<geometry x=\"{x}\" y=\"{y}\" hdg=\"{heading}\" length=\"{length}\">{shape}</geometry>")
     });

@@ -29,16 +29,16 @@ fn bend() -> String {
 
 /// Length and speed at the end of each piece of the motion of an agent.
 fn course(scenario: &Scenario, agent: usize) -> Vec<[f64; 2]> {
-    let MotionSpec::Profile { v0, pieces } = &scenario.agents[agent].motion else {
-        panic!("{:?}", scenario.agents[agent].motion)
-    };
-    let mut at = [0.0, *v0];
-    let mut add = |&(duration, acceleration): &(f64, f64)| {
+    let agent = &scenario.agents[agent];
+    assert!(matches!(agent.motion, MotionSpec::Profile { .. }), "{:?}", agent.motion);
+    let (v0, pieces) = agent.motion.pieces(agent.length());
+    let mut at = [0.0, v0];
+    let mut add = |(duration, acceleration): (f64, f64)| {
         let speed = at[1] + acceleration * duration;
         at = [at[0] + (at[1] + speed) / 2.0 * duration, speed];
         at
     };
-    pieces.iter().map(&mut add).collect()
+    pieces.into_iter().map(&mut add).collect()
 }
 
 #[test]

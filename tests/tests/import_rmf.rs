@@ -1,7 +1,6 @@
 //! Buildings of Open-RMF: scales, levels, lanes and the limits of the fleets.
 
 use pcr_formats::import::{ImportOptions, ImportedLayout, InputFormat, Layout, Warnings, layout, scenario};
-use pcr_formats::scenario::TURN;
 use pcr_formats::scenario::{MotionSpec, Scenario};
 use pcr_planning::exclusion_table::ExclusionTable;
 use std::path::PathBuf;
@@ -98,12 +97,12 @@ fn vehicles_stop_and_turn_at_corners() {
     let scenario = scenario(InputFormat::Rmf, TRIPLE_H, &tiny(&["TopLeft:TopCenterLeft"]), &mut warnings).unwrap();
     let agent = &scenario.agents[0];
     let turns: Vec<f64> =
-        agent.path.iter().filter(|segment| segment.letter() == 'A').map(|arc| arc.length() / TURN).collect();
+        agent.path.iter().filter(|segment| segment.letter() == 'T').map(|turn| turn.sweep().abs()).collect();
     // Down, to the right, up again; the lanes between are straight to a hundredth of a radian.
     assert_eq!(turns.iter().filter(|turn| (**turn - std::f64::consts::FRAC_PI_2).abs() < 0.01).count(), 2, "{turns:?}");
     assert!(turns.iter().all(|turn| *turn < 0.01 || *turn > 1.5));
     let MotionSpec::Profile { pieces, .. } = &agent.motion else { panic!() };
-    let duration: f64 = pieces.iter().map(|(duration, _)| duration).sum();
+    let duration: f64 = pieces.iter().map(|piece| piece.duration).sum();
     // Three straight drives and two turns, each from rest to rest.
     let pixels = [(160.537 - 40.342), (166.427 - 46.387), (160.494 - 40.353)];
     let drive = |length: f64| length / 0.5 + 0.5 / 0.75;

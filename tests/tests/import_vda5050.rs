@@ -57,7 +57,7 @@ fn published_orders() {
     assert!((agent.length() - 36.8_f64.hypot(10.5)).abs() < 1e-12);
     // 1.5 m/s on the edge, though the vehicle can do 2.
     let MotionSpec::Profile { pieces, .. } = &agent.motion else { panic!() };
-    assert!((pieces[0].0 - 3.0).abs() < 1e-9 && pieces.len() == 3);
+    assert!((pieces[0].duration - 3.0).abs() < 1e-9 && pieces.len() == 3);
     assert!(warnings[0].contains("its actions take no time here"));
     // A test of its sender: its version is none, and all its numbers are 0.
     let refused = |text: &str| read(text, &options()).unwrap_err().replace("order some-order-id, ", "");
@@ -79,10 +79,10 @@ fn published_orders() {
 fn the_base_is_travelled_and_the_horizon_if_asked_for() {
     let text = square().to_string();
     let (scenario, warnings) = read(&text, &options()).unwrap();
-    assert_eq!(scenario.agents[0].structure(), "SAS");
+    assert_eq!(scenario.agents[0].structure(), "STS");
     assert_eq!(warnings, ["order square: 1 of 3 edges are not released and left out (--horizon)"]);
     let (scenario, warnings) = read(&text, &ImportOptions { horizon: true, ..options() }).unwrap();
-    assert_eq!((scenario.agents[0].structure().as_str(), warnings.len()), ("SASAS", 0));
+    assert_eq!((scenario.agents[0].structure().as_str(), warnings.len()), ("STSTS", 0));
     // The base ends at the first node or edge that is not released.
     let mut order = square();
     for list in ["nodes", "edges"] {
@@ -90,7 +90,7 @@ fn the_base_is_travelled_and_the_horizon_if_asked_for() {
             part["released"] = json!(true);
         }
     }
-    assert_eq!(read(&order.to_string(), &options()).unwrap().0.agents[0].structure(), "SASAS");
+    assert_eq!(read(&order.to_string(), &options()).unwrap().0.agents[0].structure(), "STSTS");
     let released = |order: &Value, list: &str, id: &str, is_released: Value| {
         let mut order = order.clone();
         let parts = order[list].as_array_mut().unwrap();
@@ -98,7 +98,7 @@ fn the_base_is_travelled_and_the_horizon_if_asked_for() {
         part["released"] = is_released;
         order
     };
-    for (k, structure) in [(1, "S"), (2, "SAS")] {
+    for (k, structure) in [(1, "S"), (2, "STS")] {
         let [edge, node] = [format!("e{k}"), format!("n{}", k + 1)];
         let edge_only = released(&order, "edges", &edge, json!(false));
         let both = released(&edge_only, "nodes", &node, json!(false));
@@ -126,7 +126,7 @@ fn the_base_is_travelled_and_the_horizon_if_asked_for() {
     }
     // 0.5 m/s on the first edge: 1 s up and down, and 7 s; then a quarter turn.
     let MotionSpec::Profile { pieces, .. } = &scenario.agents[0].motion else { panic!() };
-    let durations: Vec<f64> = pieces.iter().take(3).map(|(duration, _)| duration.round()).collect();
+    let durations: Vec<f64> = pieces.iter().take(3).map(|piece| piece.duration.round()).collect();
     assert_eq!(durations, [1.0, 7.0, 1.0]);
 }
 
@@ -461,7 +461,7 @@ fn names_are_texts_and_numbers_go_on() {
         }
     }
     let (scenario, warnings) = read(&later.to_string(), &options()).unwrap();
-    assert_eq!(scenario.agents[0].structure(), "SAS");
+    assert_eq!(scenario.agents[0].structure(), "STS");
     let alone = "order square: the order before it is not there; it is read as if the vehicle began at its first node";
     assert!(warnings.iter().any(|line| line == alone), "{warnings:?}");
 }

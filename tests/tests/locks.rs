@@ -136,11 +136,11 @@ fn samples(edge: &LayoutEdge) -> Vec<(f64, Point)> {
             let u = length * f64::from(k) / 60.0;
             let ([x, y], (sin, cos)) = (piece.start, piece.heading.sin_cos());
             let (along, across) = match piece.shape {
-                PathSegment::Line { .. } | PathSegment::Cusp => (u, 0.0),
                 PathSegment::Arc { radius, sweep } => {
                     let angle = u / radius;
                     (radius * angle.sin(), (radius * (1.0 - angle.cos())).copysign(sweep))
                 }
+                _ => (u, 0.0),
             };
             points.push((from + u, [x + along * cos - across * sin, y + along * sin + across * cos]));
         }

@@ -47,11 +47,11 @@ fn on(edge: &LayoutEdge, length: f64) -> Pose {
         let u = rest.clamp(0.0, piece.shape.length());
         let ([x, y], (sin, cos)) = (piece.start, piece.heading.sin_cos());
         let (along, across, turned) = match piece.shape {
-            PathSegment::Line { .. } | PathSegment::Cusp => (u, 0.0, 0.0),
             PathSegment::Arc { radius, sweep } => {
                 let angle = u / radius;
                 (radius * angle.sin(), (radius * (1.0 - angle.cos())).copysign(sweep), angle.copysign(sweep))
             }
+            _ => (u, 0.0, 0.0),
         };
         last = Pose(length, [x + along * cos - across * sin, y + along * sin + across * cos], piece.heading + turned);
         if rest <= piece.shape.length() {

@@ -48,8 +48,7 @@ fn agent(id: u64, dice: &mut Dice) -> Agent {
                 speed += accel * duration;
             }
             let factor = path.iter().map(PathSegment::length).sum::<f64>() / travelled;
-            let scaled = pieces.iter().map(|(duration, accel)| (*duration, accel * factor)).collect();
-            MotionSpec::Profile { v0: v0 * factor, pieces: scaled }
+            MotionSpec::profile(v0 * factor, pieces.iter().map(|(duration, accel)| (*duration, accel * factor)))
         }
     };
     Agent { t_start: dice.range(0.0, 3.0), ..Agent::disc(id, dice.range(0.05, 0.2), start, path, motion) }

@@ -49,7 +49,6 @@ pub(super) fn path(curve: &[PlacedSegment], scale: f64, flipped: bool, at: impl 
             data.move_to(at(piece.start));
         }
         match piece.shape {
-            PathSegment::Line { .. } | PathSegment::Cusp => data.line_to(at(piece.end())),
             PathSegment::Arc { radius, .. } if radius < POINT => data.line_to(at(piece.end())),
             PathSegment::Arc { radius, sweep } => {
                 // Below half a turn two points and a radius leave no doubt which arc is meant.
@@ -60,6 +59,7 @@ pub(super) fn path(curve: &[PlacedSegment], scale: f64, flipped: bool, at: impl 
                     data.arc_to(radius * scale, (sweep > 0.0) != flipped, at(end));
                 }
             }
+            _ => data.line_to(at(piece.end())),
         }
     }
     data
@@ -91,11 +91,11 @@ pub(super) fn bounds(layout: &Layout, level: Option<usize>, radius: f64) -> [Int
         // Arcs by points of which none is farther than an eighth of a turn from the next.
         (0..=8).map(|k| match piece.shape {
             PathSegment::Line { .. } if k < 8 => piece.start,
-            PathSegment::Line { .. } | PathSegment::Cusp => piece.end(),
             PathSegment::Arc { radius, sweep } => {
                 let sweep = sweep * f64::from(k) / 8.0;
                 PlacedSegment { shape: PathSegment::Arc { radius, sweep }, ..*piece }.end()
             }
+            _ => piece.end(),
         })
     });
     let mut range = [(f64::INFINITY, f64::NEG_INFINITY); 2];

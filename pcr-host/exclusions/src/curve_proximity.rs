@@ -7,6 +7,7 @@
 use crate::convex_outline::depth;
 use crate::nearest::point;
 use pcr_formats::scenario::{PathSegment, PlacedSegment};
+use pcr_planning::exclusion_table::is_turn;
 use std::f64::consts::{FRAC_PI_2, PI, TAU};
 
 /// Roots that differ by at most this are equal \[m\].
@@ -44,6 +45,9 @@ pub(crate) fn lengths_near_polygon(curve: &[PlacedSegment], polygon: &[[f64; 2]]
 /// pieces are joined. `path` is where the reference point goes, and the corners of the outline are ahead and left of it. What is tested
 /// may change only where a corner of the outline is at one of the distances `far` from a side or corner of the polygon, or a corner of the
 /// polygon from one of the outline.
+///
+/// A turn in place has no length. It is within a range where the outline passes the test in all of it, ends a range where it does not pass in
+/// all of it, and is a range where it passes in some of it. Of a path that is one turn the angles are returned at which it passes.
 pub(crate) fn lengths_of_outline(
     path: &[PlacedSegment],
     outline: &[[f64; 2]],
@@ -51,43 +55,89 @@ pub(crate) fn lengths_of_outline(
     far: &[f64],
     passes: impl Fn(&[[f64; 2]]) -> bool,
 ) -> Vec<[f64; 2]> {
+    if let [turn] = path
+        && is_turn(turn)
+    {
+        return parts_of_outline(turn, outline, polygon, far, passes);
+    }
     let mut ranges: Vec<[f64; 2]> = Vec::new();
-    let mut before = 0.0;
+    let (mut before, mut ends_here) = (0.0, false);
     for piece in path {
-        let length = piece.shape.length();
-        let mut cuts = Vec::new();
-        for &far in far {
-            let mut add = |ways: &mut dyn Iterator<Item = PlacedSegment>, other: &[[f64; 2]]| {
-                for way in ways {
-                    let share = length / way.shape.length();
-                    if share.is_finite() {
-                        cuts.extend(roots(&way, other, far.abs()).into_iter().map(|at| at * share));
-                    }
-                }
-            };
-            add(&mut outline.iter().map(|&corner| carried(piece, corner)), polygon);
-            add(&mut polygon.iter().map(|&corner| seen(piece, corner)), outline);
+        let mut parts = parts_of_outline(piece, outline, polygon, far, &passes);
+        let is_whole = matches!(parts[..], [[from, to]] if from == 0.0 && to == extent(piece));
+        if is_turn(piece) {
+            ends_here |= !is_whole;
+            parts.truncate(1);
+            parts.iter_mut().for_each(|part| *part = [0.0; 2]);
         }
-        let same = SAME.min(length / 1e6);
-        cuts.retain(|cut| *cut > same && *cut < length - same);
-        cuts.sort_by(f64::total_cmp);
-        cuts.dedup_by(|next, last| *next - *last < same);
-        cuts.insert(0, 0.0);
-        cuts.push(length);
-        for pair in cuts.windows(2) {
-            let part = piece.part(0.0, (pair[0] + pair[1]) / 2.0);
-            let (at, heading) = (part.end(), part.heading_at_end());
-            let placed: Vec<[f64; 2]> = outline.iter().map(|&corner| moved(at, turned(corner, heading))).collect();
-            if !passes(&placed) {
-                continue;
-            }
-            let [from, to] = [before + pair[0], before + pair[1]];
+        for [from, to] in parts.into_iter().map(|part| part.map(|at| before + at)) {
             match ranges.last_mut() {
-                Some(last) if last[1] == from => last[1] = to,
+                Some(last) if last[1] == from && (!ends_here || from == to) => last[1] = to,
                 _ => ranges.push([from, to]),
             }
         }
-        before += length;
+        if !is_turn(piece) && extent(piece) > 0.0 {
+            ends_here = false;
+        }
+        before += piece.shape.length();
+    }
+    ranges
+}
+
+/// Length of a piece \[m\], or the angle of a turn in place.
+fn extent(piece: &PlacedSegment) -> f64 {
+    if is_turn(piece) { piece.shape.sweep().abs() } else { piece.shape.length() }
+}
+
+/// The part of a piece up to a length, or of a turn in place up to an angle.
+fn first_part(piece: &PlacedSegment, at: f64) -> PlacedSegment {
+    if !is_turn(piece) {
+        return piece.part(0.0, at);
+    }
+    PlacedSegment { shape: PathSegment::Turn { sweep: at.copysign(piece.shape.sweep()) }, ..*piece }
+}
+
+/// Lengths of one piece, or angles of a turn in place, at which the outline passes the test, in ascending order.
+fn parts_of_outline(
+    piece: &PlacedSegment,
+    outline: &[[f64; 2]],
+    polygon: &[[f64; 2]],
+    far: &[f64],
+    passes: impl Fn(&[[f64; 2]]) -> bool,
+) -> Vec<[f64; 2]> {
+    let mut ranges: Vec<[f64; 2]> = Vec::new();
+    let length = extent(piece);
+    let mut cuts = Vec::new();
+    for &far in far {
+        let mut add = |ways: &mut dyn Iterator<Item = PlacedSegment>, other: &[[f64; 2]]| {
+            for way in ways {
+                let share = length / way.shape.length();
+                if share.is_finite() {
+                    cuts.extend(roots(&way, other, far.abs()).into_iter().map(|at| at * share));
+                }
+            }
+        };
+        add(&mut outline.iter().map(|&corner| carried(piece, corner)), polygon);
+        add(&mut polygon.iter().map(|&corner| seen(piece, corner)), outline);
+    }
+    let same = SAME.min(length / 1e6);
+    cuts.retain(|cut| *cut > same && *cut < length - same);
+    cuts.sort_by(f64::total_cmp);
+    cuts.dedup_by(|next, last| *next - *last < same);
+    cuts.insert(0, 0.0);
+    cuts.push(length);
+    for pair in cuts.windows(2) {
+        let part = first_part(piece, (pair[0] + pair[1]) / 2.0);
+        let (at, heading) = (part.end(), part.heading_at_end());
+        let placed: Vec<[f64; 2]> = outline.iter().map(|&corner| moved(at, turned(corner, heading))).collect();
+        if !passes(&placed) {
+            continue;
+        }
+        let [from, to] = [pair[0], pair[1]];
+        match ranges.last_mut() {
+            Some(last) if last[1] == from => last[1] = to,
+            _ => ranges.push([from, to]),
+        }
     }
     ranges
 }
@@ -105,8 +155,9 @@ fn turned([x, y]: [f64; 2], angle: f64) -> [f64; 2] {
 fn carried(piece: &PlacedSegment, corner: [f64; 2]) -> PlacedSegment {
     let start = moved(piece.start, turned(corner, piece.heading));
     match piece.shape {
-        PathSegment::Line { .. } | PathSegment::Cusp => PlacedSegment { start, ..*piece },
         PathSegment::Arc { sweep, .. } => about(start, centre(piece), sweep),
+        PathSegment::Turn { sweep } | PathSegment::Kink { sweep } => about(start, piece.start, sweep),
+        PathSegment::Line { .. } | PathSegment::Cusp => PlacedSegment { start, ..*piece },
     }
 }
 
@@ -118,6 +169,7 @@ fn seen(piece: &PlacedSegment, point: [f64; 2]) -> PlacedSegment {
             PlacedSegment { start: from(point), heading: PI, shape: piece.shape }
         }
         PathSegment::Arc { sweep, .. } => about(from(point), from(centre(piece)), -sweep),
+        PathSegment::Turn { sweep } | PathSegment::Kink { sweep } => about(from(point), [0.0; 2], -sweep),
     }
 }
 
@@ -163,7 +215,6 @@ fn roots(piece: &PlacedSegment, polygon: &[[f64; 2]], far: f64) -> Vec<f64> {
 fn on_line(piece: &PlacedSegment, through: [f64; 2], normal: [f64; 2]) -> Vec<f64> {
     let off = |[x, y]: [f64; 2]| normal[0] * (x - through[0]) + normal[1] * (y - through[1]);
     match piece.shape {
-        PathSegment::Cusp => Vec::new(),
         PathSegment::Line { length } => {
             let slope = normal[0] * piece.heading.cos() + normal[1] * piece.heading.sin();
             let at = -off(piece.start) / slope;
@@ -178,13 +229,13 @@ fn on_line(piece: &PlacedSegment, through: [f64; 2], normal: [f64; 2]) -> Vec<f6
             let (middle, half) = (normal[1].atan2(normal[0]), cosine.acos());
             on_arc(piece, [middle - half, middle + half])
         }
+        _ => Vec::new(),
     }
 }
 
 /// Lengths at which a piece meets a circle.
 fn on_circle(piece: &PlacedSegment, [x, y]: [f64; 2], far: f64) -> Vec<f64> {
     match piece.shape {
-        PathSegment::Cusp => Vec::new(),
         PathSegment::Line { length } => {
             let (gap, along) = ([x - piece.start[0], y - piece.start[1]], [piece.heading.cos(), piece.heading.sin()]);
             let middle = gap[0] * along[0] + gap[1] * along[1];
@@ -207,6 +258,7 @@ fn on_circle(piece: &PlacedSegment, [x, y]: [f64; 2], far: f64) -> Vec<f64> {
             let (middle, half) = (gap[1].atan2(gap[0]), cosine.acos());
             on_arc(piece, [middle - half, middle + half])
         }
+        _ => Vec::new(),
     }
 }
 
@@ -278,6 +330,33 @@ mod tests {
             }
         }
         assert!(inside > 50_000 && outside > 50_000, "{inside} {outside}");
+    }
+
+    #[test]
+    fn a_turn_in_place_reaches_what_is_beside_it() {
+        // A beam turns by half a turn beside a wall, which its ends reach in between only.
+        let beam = [[-1.0, -0.1], [1.0, -0.1], [1.0, 0.1], [-1.0, 0.1]];
+        let wall = |y: f64| [[-5.0, y], [5.0, y], [5.0, y + 1.0], [-5.0, y + 1.0]];
+        let line = |from: f64| PlacedSegment::line([from, 0.0], [from + 2.0, 0.0]);
+        let turn = PlacedSegment { shape: PathSegment::Turn { sweep: PI }, ..line(2.0) };
+        let away = PlacedSegment { heading: PI, ..line(2.0) };
+        let lengths = |path: &[PlacedSegment], y: f64| {
+            let wall = wall(y);
+            let meets = |placed: &[[f64; 2]]| placed.iter().any(|&corner| depth(&wall, corner) >= 0.0);
+            lengths_of_outline(path, &beam, &wall, &[0.0], meets)
+        };
+        // The corner at (1, 0.1) is at 0.9 m and comes back there.
+        let angles = lengths(&[turn], 0.9);
+        let [from, to] = [angles[0][0], angles[angles.len() - 1][1]];
+        let reached = (0.9 / 1.01_f64.sqrt()).asin() - 0.1_f64.atan2(1.0);
+        assert!((from - reached).abs() < 1e-9 && (to - (PI - reached)).abs() < 1e-9, "{angles:?} {reached}");
+        assert_eq!(lengths(&[line(0.0), turn, away], 0.9), [[2.0; 2]]);
+        assert_eq!(lengths(&[line(0.0), turn, away], 1.01), [] as [[f64; 2]; 0]);
+        // All the way, and a turn that is not wholly within parts it.
+        assert_eq!(lengths(&[line(0.0), turn, away], 0.05), [[0.0, 4.0]]);
+        let inside = |placed: &[[f64; 2]]| placed.iter().all(|&corner| depth(&wall(-0.5), corner) >= 0.0);
+        let parted = lengths_of_outline(&[line(0.0), turn, away], &beam, &wall(-0.5), &[0.0], inside);
+        assert_eq!(parted, [[0.0, 2.0], [2.0, 4.0]]);
     }
 
     #[test]

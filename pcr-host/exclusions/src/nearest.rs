@@ -3,7 +3,7 @@
 //! Where two pieces come nearest, one of the points is an end, or their connection is perpendicular to both, or they
 //! cross. For these places there are few candidates.
 
-use pcr_formats::scenario::{PathSegment, PlacedSegment, TURN};
+use pcr_formats::scenario::{PathSegment, PlacedSegment};
 use std::f64::consts::TAU;
 
 /// Bound on the rounding error of a distance, relative to the sum of coordinates, lengths and radii.
@@ -79,12 +79,11 @@ fn pieces(a: &PlacedSegment, b: &PlacedSegment) -> NearestPoints {
     let best = all.min_by(|x, y| x.distance.total_cmp(&y.distance)).expect("four candidates at least");
     let reach = |piece: &PlacedSegment| match piece.shape {
         PathSegment::Line { length } => length,
-        PathSegment::Cusp => 0.0,
         PathSegment::Arc { radius, .. } => radius,
+        _ => 0.0,
     };
     let far = [a, b].iter().map(|piece| piece.start[0].abs() + piece.start[1].abs() + reach(piece)).sum::<f64>();
-    // On the arc of a turn in place no point has digits.
-    NearestPoints { least: (best.distance - ROUNDING * (1.0 + far) - 4.0 * TURN).max(0.0), ..best }
+    NearestPoints { least: (best.distance - ROUNDING * (1.0 + far)).max(0.0), ..best }
 }
 
 /// The line or the circle on which a piece lies.
@@ -99,8 +98,8 @@ impl SupportCurve {
     fn of(piece: &PlacedSegment) -> Self {
         let (sin, cos) = piece.heading.sin_cos();
         match piece.shape {
-            PathSegment::Line { .. } | PathSegment::Cusp => Self::Line(piece.start, [cos, sin]),
             PathSegment::Arc { radius, sweep } => Self::Circle(centre(piece, radius, sweep), radius),
+            _ => Self::Line(piece.start, [cos, sin]),
         }
     }
 }
@@ -159,7 +158,6 @@ fn length_near(piece: &PlacedSegment, at: [f64; 2]) -> f64 {
             let (sin, cos) = piece.heading.sin_cos();
             ((at[0] - piece.start[0]) * cos + (at[1] - piece.start[1]) * sin).clamp(0.0, length)
         }
-        PathSegment::Cusp => 0.0,
         PathSegment::Arc { radius, sweep } => {
             let centre = centre(piece, radius, sweep);
             let angle = |[x, y]: [f64; 2]| (y - centre[1]).atan2(x - centre[0]);
@@ -175,6 +173,7 @@ fn length_near(piece: &PlacedSegment, at: [f64; 2]) -> f64 {
             };
             radius * turned
         }
+        _ => 0.0,
     }
 }
 

@@ -173,8 +173,9 @@ impl OutlinePresence<'_> {
                 }
                 Some(at) => {
                     let beside = [at - TURNING, at + TURNING];
+                    let angle: f64 = path.iter().map(|piece| piece.shape.sweep().abs()).sum();
                     let is_all =
-                        |ranges: &[[f64; 2]]| ranges.iter().any(|&range| ride.enclosed_lengths(range).is_some());
+                        |ranges: &[[f64; 2]]| ranges.iter().any(|[from, to]| *from <= SAME && *to >= angle - SAME);
                     if !is_all(&here.certain) {
                         uncertain.push(beside);
                     }
@@ -251,13 +252,13 @@ impl OutlinePresence<'_> {
     }
 }
 
-/// Ranges in ascending order, those that meet as one.
+/// Ranges in ascending order, those that overlap as one.
 fn joined(mut ranges: Vec<[f64; 2]>) -> Vec<[f64; 2]> {
     ranges.sort_by(|a, b| a[0].total_cmp(&b[0]));
     let mut all: Vec<[f64; 2]> = Vec::new();
     for next in ranges {
         match all.last_mut() {
-            Some(last) if next[0] <= last[1] => last[1] = last[1].max(next[1]),
+            Some(last) if next[0] < last[1] => last[1] = last[1].max(next[1]),
             _ => all.push(next),
         }
     }
@@ -279,8 +280,8 @@ fn near(curve: &[PlacedSegment], far: f64, [lo, hi]: [[f64; 2]; 2]) -> bool {
         let ends = [piece.start, piece.end()];
         // No point of a piece is farther from both ends than half its length.
         let room = match piece.shape {
-            PathSegment::Line { .. } | PathSegment::Cusp => 0.0,
             PathSegment::Arc { .. } => piece.shape.length() / 2.0,
+            _ => 0.0,
         };
         (0..2).all(|x| {
             let (least, most) = (ends[0][x].min(ends[1][x]), ends[0][x].max(ends[1][x]));
@@ -703,8 +704,8 @@ fn parts(curve: &[PlacedSegment], split: Option<f64>) -> Vec<PlacedSegment> {
         let length = piece.shape.length();
         let by_length = split.map_or(1.0, |most| (length / most - 1e-9).ceil());
         let by_turn = match piece.shape {
-            PathSegment::Line { .. } | PathSegment::Cusp => 1.0,
             PathSegment::Arc { sweep, .. } => (sweep.abs() / TURN - 1e-9).ceil(),
+            _ => 1.0,
         };
         let count = by_length.max(by_turn).max(1.0);
         for k in 0..count as usize {

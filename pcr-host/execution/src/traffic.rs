@@ -202,7 +202,7 @@ mod tests {
     use super::*;
     use crate::lifelong::aisles;
     use pcr_formats::footprint::Footprint;
-    use pcr_formats::scenario::PlacedSegment;
+    use pcr_formats::scenario::{PathSegment, PlacedSegment};
 
     /// Where an agent is at a time, and how it heads.
     fn pose(agent: &Agent, time: f64) -> ([f64; 2], f64) {
@@ -218,7 +218,13 @@ mod tests {
                 length += part.before * taken + 0.5 * gain * taken * taken;
                 left -= taken;
             }
-            let here = placed.part(0.0, length.min(shape.length()));
+            let here = match shape {
+                PathSegment::Turn { sweep } => {
+                    let shape = PathSegment::Turn { sweep: length.min(sweep.abs()).copysign(sweep) };
+                    PlacedSegment { shape, ..placed }
+                }
+                _ => placed.part(0.0, length.min(shape.length())),
+            };
             (at, heading) = (here.end(), here.heading_at_end());
             if left <= 0.0 {
                 break;

@@ -27,8 +27,10 @@
 //!   the vehicle around the point that travels the path; see [`Footprint`].
 //! - `"loads": [ { "segments": [2, 3], "radius": 0.6 } ]`: another radius, or a `footprint`, from segment 2 to segment 3 (counted
 //!   from 1): what the vehicle carries there.
-//! - `{ "kind": "turn", "sweep": 1.57 }` in a path is a turn in place, an arc of 1 nm radius. With `v_max` and `a_max` it needs
-//!   `turn_v_max` \[rad/s\] and `turn_a_max` \[rad/s²\], and the vehicle comes to rest before and after it.
+//! - `{ "kind": "turn", "sweep": 1.57 }` in a path is a turn in place, before and after which the vehicle is at rest. With `v_max` and
+//!   `a_max` it needs `turn_v_max` \[rad/s\] and `turn_a_max` \[rad/s²\]; a profile has pieces with `turn_accel` \[rad/s²\] instead of
+//!   `accel` for it. `{ "kind": "kink", "sweep": 0.005 }` is passed without a stop. Files with them have `"version": 3`. Before, turns had a
+//!   length of 1 nm for each radian in profiles; such files are read as they were meant.
 //! - `"warnings": [ "..." ]` beside `agents` is what `pcr import` had to say about the file that the scenario is from.
 //! - `"margin": 0.05` is a distance to be kept around the disc; 0 if left out.
 //! - `"label": "AGV-7"` is what people call the agent. Ids may be texts, too, if all are: then the agents are numbered from 1 in the
@@ -49,6 +51,8 @@ mod gear;
 mod json_fields;
 mod labels;
 mod load_outline;
+mod motion_spec;
+mod old_turns;
 mod outline;
 mod placed_segment;
 mod round_trip;
@@ -63,7 +67,8 @@ pub use json_fields::{LIMIT, ScenarioError};
 pub use labels::{LONGEST_LABEL, Labels};
 pub use labels::{controls, label, printable};
 pub use load_outline::LoadOutline;
-pub use placed_segment::{KINK, PlacedSegment, TURN};
+pub use motion_spec::{MotionPiece, MotionSpec};
+pub use placed_segment::{KINK, PlacedSegment};
 pub use round_trip::speed_after;
 use std::f64::consts::TAU;
 
@@ -107,7 +112,7 @@ pub struct Agent {
     pub motion: MotionSpec,
 }
 
-/// A line, an arc, or a change of gear between them.
+/// A line, an arc, or what may be between them: a turn in place, a kink, or a change of gear.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum PathSegment {
     /// Straight, with its length \[m\].
@@ -119,6 +124,16 @@ pub enum PathSegment {
     Arc {
         /// \[m\]
         radius: f64,
+        /// \[rad\], left positive.
+        sweep: f64,
+    },
+    /// A turn in place, before and after which the vehicle is at rest. It has no length.
+    Turn {
+        /// \[rad\], left positive.
+        sweep: f64,
+    },
+    /// A change of direction that the vehicle passes without a stop. It has no length and takes no time.
+    Kink {
         /// \[rad\], left positive.
         sweep: f64,
     },
@@ -146,7 +161,7 @@ impl PathSegment {
         match *self {
             Self::Line { length } => length,
             Self::Arc { radius, sweep } => radius * sweep.abs(),
-            Self::Cusp => 0.0,
+            Self::Turn { .. } | Self::Kink { .. } | Self::Cusp => 0.0,
         }
     }
 
@@ -156,51 +171,32 @@ impl PathSegment {
         const SHORTENED: f64 = 1.0 - 1e-12;
         match *self {
             Self::Line { .. } | Self::Cusp => 1.0,
-            Self::Arc { sweep, .. } => (sweep.abs() / TAU * SHORTENED).ceil().max(1.0),
+            Self::Arc { sweep, .. } | Self::Turn { sweep } | Self::Kink { sweep } => {
+                (sweep.abs() / TAU * SHORTENED).ceil().max(1.0)
+            }
         }
     }
 
-    /// Letter of the paper's path structure.
+    /// The angle by which it turns the vehicle, left positive \[rad\].
+    pub fn sweep(&self) -> f64 {
+        match *self {
+            Self::Arc { sweep, .. } | Self::Turn { sweep } | Self::Kink { sweep } => sweep,
+            Self::Line { .. } | Self::Cusp => 0.0,
+        }
+    }
+
+    /// Whether the vehicle has to turn in place for it.
+    pub fn takes_turning(&self) -> bool {
+        matches!(self, Self::Turn { sweep } if *sweep != 0.0)
+    }
+
+    /// Letter of the paper's path structure; it has none for turns and changes of gear.
     pub fn letter(&self) -> char {
         match self {
             Self::Line { .. } => 'S',
             Self::Arc { .. } => 'A',
+            Self::Turn { .. } | Self::Kink { .. } => 'T',
             Self::Cusp => 'C',
-        }
-    }
-}
-
-/// Speed over time.
-#[derive(Clone, Debug, PartialEq)]
-pub enum MotionSpec {
-    /// From rest to rest in the least time under these limits.
-    RestToRest {
-        /// \[m/s\]
-        v_max: f64,
-        /// \[m/s²\]
-        a_max: f64,
-    },
-    /// A speed at the start, then constant accelerations.
-    Profile {
-        /// \[m/s\]
-        v0: f64,
-        /// Duration \[s\] and acceleration \[m/s²\] of each piece.
-        pieces: Vec<(f64, f64)>,
-    },
-}
-
-impl MotionSpec {
-    /// Speed at the start of a path of this length \[m/s\], then durations \[s\] and accelerations \[m/s²\].
-    pub fn pieces(&self, length: f64) -> (f64, Vec<(f64, f64)>) {
-        match self {
-            Self::Profile { v0, pieces } => (*v0, pieces.clone()),
-            Self::RestToRest { .. } if length <= 0.0 => (0.0, Vec::new()),
-            Self::RestToRest { v_max, a_max } => {
-                let peak = v_max.min((length * a_max).sqrt());
-                // If the motion does not reach the largest speed, rounding would leave a small remainder.
-                let cruise = if peak < *v_max { 0.0 } else { (length / peak - peak / a_max).max(0.0) };
-                (0.0, vec![(peak / a_max, *a_max), (cruise, 0.0), (peak / a_max, -a_max)])
-            }
         }
     }
 }
@@ -227,24 +223,12 @@ impl Agent {
                 let peak = v_max.min((length * a_max).sqrt());
                 if length > 0.0 { length / peak + peak / a_max } else { 0.0 }
             }
-            MotionSpec::Profile { pieces, .. } => pieces.iter().map(|(duration, _)| duration).sum(),
+            MotionSpec::Profile { pieces, .. } => pieces.iter().map(|piece| piece.duration).sum(),
         }
     }
 
     /// The paper's path structure: a letter a segment.
     pub fn structure(&self) -> String {
         self.path.iter().map(PathSegment::letter).collect()
-    }
-
-    /// Heading of the vehicle at a travelled length \[rad\], accumulated along the arcs and not reduced to one turn.
-    pub fn heading_at(&self, length: f64) -> f64 {
-        let (mut heading, mut rest) = (self.start[2], length);
-        for segment in &self.path {
-            if let PathSegment::Arc { radius, sweep } = *segment {
-                heading += (rest / radius).clamp(0.0, sweep.abs()).copysign(sweep);
-            }
-            rest = (rest - segment.length()).max(0.0);
-        }
-        heading
     }
 }

@@ -3,7 +3,7 @@
 
 use crate::fleet::{Fleet, FormatRangeError, HostScalar};
 use pcr_core::{Interval, Motion};
-use pcr_formats::scenario::{Agent, AgentPart, PathSegment, Scenario, TURN};
+use pcr_formats::scenario::{Agent, AgentPart, PathSegment, Scenario};
 use std::borrow::Cow;
 
 /// Rounding of lengths along a path, relative.
@@ -25,8 +25,8 @@ pub struct Body {
     pub agent: usize,
     /// `None` if it is there all the way.
     stretch: Option<Stretch>,
-    /// Lengths on its path during which it turns in place \[m\], and the share of them that the path of the agent has.
-    turned: Vec<([f64; 2], f64)>,
+    /// Lengths on its path during which it turns in place, which that of the agent does not have \[m\].
+    turned: Vec<[f64; 2]>,
     /// What lengths on its path are off by their rounding \[m\].
     rounding: f64,
 }
@@ -67,8 +67,7 @@ impl Body {
         }
         let slack = self.rounding;
         let before = |length: f64| {
-            let turned =
-                self.turned.iter().map(|([from, to], share)| (1.0 - share) * (length.min(*to) - from).max(0.0));
+            let turned = self.turned.iter().map(|[from, to]| (length.min(*to) - from).max(0.0));
             length - turned.sum::<f64>()
         };
         let [lo, hi] = [before(lengths[0]) - slack, before(lengths[1]) + slack];
@@ -125,11 +124,7 @@ impl<S: HostScalar> BodyFleet<S> {
         for (place, agent) in scenario.agents.iter().enumerate() {
             for (agent, stretch) in parts::<S>(agent) {
                 let own = Fleet::body(&agent)?;
-                let turned = own
-                    .turned(0)
-                    .iter()
-                    .map(|turn| ([turn.lengths.lo, turn.lengths.hi].map(S::to_f64), TURN / turn.lever.to_f64()));
-                let turned = turned.collect();
+                let turned = own.turned(0).iter().map(|turn| [turn.lo, turn.hi].map(S::to_f64)).collect();
                 let segments = agent.path.len() as f64;
                 let length = agent.length() + stretch.map_or(0.0, |stretch| stretch.length);
                 let rounding = ROUNDING * (1.0 + length) + segments * (S::EPSILON * length + S::STEP);

@@ -4,12 +4,12 @@
 
 pub mod outlines;
 
-use crate::fleet::{Fleet, HostEcm, HostScalar, growth_of_turns, turn_in_place};
+use crate::fleet::{Fleet, HostEcm, HostScalar, growth_of_turns};
 use pcr_certify::raw::{
     RawAgent, RawAngle, RawBranch, RawMotion, RawPair, RawPath, RawPhase, RawPiece, RawRegion, RawSegment, RawTable,
 };
 use pcr_core::{Curve, Interval, Motion, RegionRef, TurnSide, excess};
-use pcr_formats::scenario::{Agent, PathSegment, Scenario, TURN, figure};
+use pcr_formats::scenario::{Agent, PathSegment, Scenario, figure};
 use std::f64::consts::{PI, TAU};
 use std::fmt;
 
@@ -139,17 +139,10 @@ fn same_disc<S: HostScalar>(given: &Agent, held: &RawAgent, pivots: bool) -> Res
 /// Compares path and times of an agent with those of a scenario. `turned` are the lengths of its turns in place, where they have one \[m\].
 fn same_motion<S: HostScalar>(given: &Agent, held: &RawAgent, turned: Vec<f64>) -> Result<(), RoundTripError> {
     let start = held.travel.as_ref().map_or(given.t_start, |travel| travel.start);
-    let has_length = |segment: &&PathSegment| {
-        turn_in_place::<S>(segment).is_none()
-            && (turned.is_empty() || !matches!(segment, PathSegment::Arc { radius: TURN, .. }))
-    };
-    let travelled = given.path.iter().filter(has_length).map(PathSegment::length).chain(turned.iter().copied()).sum();
+    let travelled = given.path.iter().map(PathSegment::length).chain(turned.iter().copied()).sum();
     let length = held.path.segments.last().map_or(0.0, |last| last.to);
     // A length is rounded for each segment, and for each turn of an arc; the rounding of a radius is in it once for each radian.
-    let bends = given.path.iter().map(|segment| match segment {
-        PathSegment::Arc { sweep, .. } => sweep.abs(),
-        PathSegment::Line { .. } | PathSegment::Cusp => 0.0,
-    });
+    let bends = given.path.iter().map(|segment| segment.sweep().abs());
     let parts = (held.path.segments.len() + given.path.len() + 1) as f64 + bends.sum::<f64>();
     let numbers = [
         ("start.x", held.path.start[0], given.start[0], 1.0),

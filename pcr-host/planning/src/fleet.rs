@@ -21,7 +21,6 @@ use pcr_core::{
     CapacityError, Curve, Ecm, EcmEntry, EcmError, Interval, InvalidInput, Limits, Motion, Outline, PathRef, Phase,
     Piece, Point, Pose, PrecedenceTable, Profile, ProfileRef, Radians, RegionPrecedence, Scalar, Segment, TurnSide,
 };
-use pcr_formats::scenario::TURN;
 use pcr_formats::scenario::{Agent, MotionSpec, PathSegment, Scenario};
 use std::f64::consts::{PI, TAU};
 
@@ -150,8 +149,8 @@ struct MotionParts<S: Scalar> {
     shape: Shape<S>,
     margin: S,
     start: S,
-    /// Turns in place with a length, in the order of the path.
-    turned: Vec<LongTurn<S>>,
+    /// Lengths of turns in place that have one, in the order of the path.
+    turned: Vec<Interval<S>>,
 }
 
 /// What moves along a path. Outlines are large, and most fleets have none.
@@ -226,8 +225,8 @@ impl<S: HostScalar> Fleet<S> {
         (parts.heading, &parts.turns)
     }
 
-    /// Turns in place that have a length on the path of an agent's motion.
-    pub(crate) fn turned(&self, agent: usize) -> &[LongTurn<S>] {
+    /// Lengths on the path of an agent's motion during which it turns in place.
+    pub(crate) fn turned(&self, agent: usize) -> &[Interval<S>] {
         self.agents.get(agent).map_or(&[], |parts| &parts.turned)
     }
 
@@ -237,25 +236,13 @@ impl<S: HostScalar> Fleet<S> {
     }
 }
 
-/// A turn in place that has a length on the path of a motion.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct LongTurn<S> {
-    /// Lengths during which it turns \[m\].
-    pub(crate) lengths: Interval<S>,
-    /// Length for each radian \[m\].
-    pub(crate) lever: S,
-}
-
 /// Index of the segment before which an agent turns in place, and the angle.
 pub(crate) type TurnAt<S> = (usize, <S as Scalar>::Angle);
 
 impl<S: HostScalar> MotionParts<S> {
+    /// It waits while it turns in place.
     fn new(agent: &Agent, shape: Shape<S>) -> Result<Self, FieldFault> {
-        let path = place_path(agent, None)?;
-        // It waits while it turns in place.
-        let waits = agent.path.iter().any(|segment| turn_in_place::<S>(segment).is_some());
-        let motion = waits.then(|| turns::joined::<S>(&agent.parts().concat()));
-        Self::along(agent, path, motion.as_ref().unwrap_or(&agent.motion), shape)
+        Self::along(agent, place_path(agent, None)?, &agent.motion, shape)
     }
 
     /// A disc or a convex outline whose turns in place have a length.
@@ -277,9 +264,7 @@ impl<S: HostScalar> MotionParts<S> {
         let path = PathRef::new(&segments).map_err(derived::<S>)?;
         let phases = phases(agent, motion, path.length())?;
         let turned = segments.iter().filter_map(|segment| match segment.curve() {
-            Curve::Pivot { lever, .. } => {
-                Some(LongTurn { lengths: Interval::new(segment.from(), segment.from() + segment.length()), lever })
-            }
+            Curve::Pivot { .. } => Some(Interval::new(segment.from(), segment.from() + segment.length())),
             _ => None,
         });
         let turned = turned.collect();
@@ -333,17 +318,17 @@ fn place_path<S: HostScalar>(agent: &Agent, levers: Option<&[f64]>) -> Result<Pl
             (facing, cusps) = (Some(if half > 0.0 { -half } else { 0.0 }), cusps + 1);
             continue;
         }
-        if segment.length() <= 0.0 {
+        let turn = match *segment {
+            PathSegment::Turn { sweep } | PathSegment::Kink { sweep } => Some(sweep),
+            _ => None,
+        };
+        if turn.map_or_else(|| segment.length(), f64::abs) <= 0.0 {
             continue;
         }
         // In the file.
         let source = source - cusps;
         let at = |problem| FieldFault { part: Some(("segment", source)), problem };
         let lever = levers.and_then(|levers| levers.get(source + cusps).copied()).filter(|lever| *lever > 0.0);
-        let turn = match *segment {
-            PathSegment::Arc { radius: TURN, sweep } if levers.is_some() => Some(sweep),
-            _ => turn_in_place::<S>(segment),
-        };
         if let Some(sweep) = turn.filter(|_| lever.is_none()) {
             let by = angle::<S>("sweep", sweep).map_err(at)?;
             let last = segments.last_mut().unwrap_or(&mut origin);
@@ -352,24 +337,22 @@ fn place_path<S: HostScalar>(agent: &Agent, levers: Option<&[f64]>) -> Result<Pl
             continue;
         }
         let whole = segment.turns();
-        let curve = match *segment {
-            PathSegment::Line { .. } | PathSegment::Cusp => None,
-            PathSegment::Arc { radius, sweep } => Some((
-                number("radius", lever.unwrap_or(radius)).map_err(at)?,
-                if sweep > 0.0 { TurnSide::Left } else { TurnSide::Right },
-            )),
+        let side = if segment.sweep() > 0.0 { TurnSide::Left } else { TurnSide::Right };
+        let radius = |radius| number::<S>("radius", radius).map_err(at);
+        let (curve, length) = match (*segment, lever) {
+            (PathSegment::Arc { radius: given, .. }, _) => {
+                (Curve::Arc { radius: radius(given)?, turn: side }, segment.length())
+            }
+            (shape, Some(lever)) => (Curve::Pivot { lever: radius(lever)?, turn: side }, lever * shape.sweep().abs()),
+            (_, None) => (Curve::Line, segment.length()),
         };
-        let length = match (*segment, lever) {
-            (PathSegment::Arc { sweep, .. }, Some(lever)) => lever * sweep.abs(),
-            _ => segment.length(),
-        };
-        let (length, is_turn) = (number("length", length / whole).map_err(at)?, lever.is_some());
+        let length = number("length", length / whole).map_err(at)?;
         for _ in 0..whole as usize {
             let last = segments.last().unwrap_or(&origin);
             let next = match curve {
-                None => last.then_line(length),
-                Some((lever, turn)) if is_turn => last.then_pivot(lever, turn, length),
-                Some((radius, turn)) => last.then_arc(radius, turn, length),
+                Curve::Line => last.then_line(length),
+                Curve::Pivot { lever, turn } => last.then_pivot(lever, turn, length),
+                Curve::Arc { radius, turn } => last.then_arc(radius, turn, length),
             };
             let next = next.and_then(|next| match facing {
                 Some(facing) => next.facing(S::angle(facing).ok_or(InvalidInput::NonFinite("gear"))?),
@@ -393,12 +376,12 @@ pub(crate) fn growth_of_turns<S: HostScalar>(agent: &Agent) -> f64 {
     turns::turning::<S>(agent).map_or(0.0, |turning| turning.off)
 }
 
-/// The angle of a turn in place \[rad\], for a format without lengths as small as its radius.
-pub(crate) fn turn_in_place<S: HostScalar>(segment: &PathSegment) -> Option<f64> {
-    match *segment {
-        PathSegment::Arc { radius: TURN, sweep } if S::from_f64(TURN) == S::ZERO => Some(sweep),
-        _ => None,
-    }
+/// For each turn in place of a body's motion that has a length, whether the agent comes to rest for it: not so for a kink.
+pub(crate) fn stops_of_pivots<S: HostScalar>(agent: &Agent) -> Vec<bool> {
+    let levers = turns::turning::<S>(agent).map_or_else(Vec::new, |turning| turning.levers);
+    let pivots = agent.path.iter().zip(levers).filter(|(_, lever)| *lever > 0.0);
+    // More than one turn is several segments.
+    pivots.flat_map(|(segment, _)| std::iter::repeat_n(segment.takes_turning(), segment.turns() as usize)).collect()
 }
 
 /// The phases of a motion of the agent over a path of this length.
@@ -416,8 +399,11 @@ fn phases<S: HostScalar>(agent: &Agent, motion: &MotionSpec, length: S) -> Resul
             let profile = profile.map_err(derived::<S>)?;
             Ok(profile.as_profile().phases().to_vec())
         }
-        MotionSpec::Profile { v0, pieces } => speed::phases(*v0, pieces, length)
-            .map_err(|(piece, problem)| FieldFault { part: piece.map(|piece| ("profile piece", piece)), problem }),
+        MotionSpec::Profile { .. } => {
+            let (v0, pieces) = motion.pieces(length.to_f64());
+            speed::phases(v0, &pieces, length)
+                .map_err(|(piece, problem)| FieldFault { part: piece.map(|piece| ("profile piece", piece)), problem })
+        }
     }
 }
 

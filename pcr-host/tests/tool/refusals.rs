@@ -49,7 +49,7 @@ fn values_of_the_wrong_kind() {
     refused(
         "/agents/1/path/0/kind",
         json!("spiral"),
-        "agent 2, segment 1, kind: \"spiral\"; allowed is \"line\", \"arc\" or \"turn\"",
+        "agent 2, segment 1, kind: \"spiral\"; allowed is \"line\", \"arc\", \"turn\" or \"kink\"",
     );
     refused("/agents/1/path", json!(null), "agent 2, path: null where an array is expected");
     refused("/agents", json!("all"), "agents: \"all\" where an array is expected");

@@ -205,6 +205,7 @@ fn schema_and_tool_refuse_the_same_scenarios() {
         ("/version", json!(1.0)),
         ("/version", json!(2)),
         ("/version", json!(3)),
+        ("/version", json!(4)),
         ("/agents/0/path", json!([{ "kind": "line", "length": 1, "gear": "reverse" }])),
         ("/agents/0/path", json!([{ "kind": "arc", "radius": 1, "sweep": 1, "gear": "forward" }])),
         ("/units", json!("m")),
@@ -284,6 +285,30 @@ fn schema_and_tool_refuse_the_same_scenarios() {
         scenario["agents"][0]["path"] = json!([{ "kind": "arc", "radius": 1, "sweep": 1, "gear": gear }]);
         let run = run_with(&["regions", "-q"], scenario.to_string().as_bytes());
         assert_eq!([run.status == 0, faults(&schema, &scenario).is_empty()], [is_one; 2], "{gear}: {}", run.err);
+    }
+    let line = json!({ "kind": "line", "length": 1 });
+    let kink = json!([line, { "kind": "kink", "sweep": 0.5 }, line]);
+    let turn = json!([{ "kind": "turn", "sweep": 1 }]);
+    let turning = |key: &str| {
+        let piece = |duration: f64, acceleration: f64| json!({ "duration": duration, key: acceleration });
+        json!({ "v0": 0, "pieces": [piece(1.0, 1.0), piece(1.0, -1.0)] })
+    };
+    let cases = [(kink, None), (turn.clone(), Some(turning("turn_accel"))), (turn, Some(turning("turn_axel")))];
+    for (case, (path, profile)) in cases.into_iter().enumerate() {
+        for version in 1..=3 {
+            let mut scenario = crossing();
+            scenario["version"] = json!(version);
+            scenario["agents"][0]["path"] = path.clone();
+            if let Some(profile) = &profile {
+                let agent = scenario["agents"][0].as_object_mut().unwrap();
+                agent.retain(|key, _| !key.ends_with("_max"));
+                agent.insert("profile".into(), profile.clone());
+            }
+            let is_one = version == 3 && case < 2;
+            let run = run_with(&["regions", "-q"], scenario.to_string().as_bytes());
+            let is_of_schema = faults(&schema, &scenario).is_empty();
+            assert_eq!([run.status == 0, is_of_schema], [is_one; 2], "{case} {version}: {}", run.err);
+        }
     }
 }
 

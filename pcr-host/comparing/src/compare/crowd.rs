@@ -56,8 +56,8 @@ fn path(
 fn half(segment: PathSegment) -> PathSegment {
     match segment {
         PathSegment::Line { length } => PathSegment::Line { length: 0.5 * length },
-        PathSegment::Cusp => segment,
         PathSegment::Arc { radius, sweep } => PathSegment::Arc { radius, sweep: 0.5 * sweep },
+        _ => segment,
     }
 }
 

@@ -107,6 +107,10 @@ impl DiscTrack {
             let (length, curvature) = match *segment {
                 PathSegment::Line { length } => (length, 0.0),
                 PathSegment::Arc { radius, sweep } => (radius * sweep.abs(), sweep.signum() / radius),
+                PathSegment::Turn { sweep } | PathSegment::Kink { sweep } => {
+                    heading += sweep;
+                    continue;
+                }
                 PathSegment::Cusp => {
                     heading += PI;
                     continue;

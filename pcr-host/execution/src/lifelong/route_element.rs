@@ -200,9 +200,12 @@ fn path(
         }
         last = match placed.shape {
             PathSegment::Line { length } => last.then_line(length)?,
-            // A route is of lines and arcs of edges.
-            PathSegment::Cusp => return Err(InvalidInput::Disconnected("path in reverse gear")),
             PathSegment::Arc { radius, sweep } => last.then_arc(radius, side(sweep), radius * sweep.abs())?,
+            // A route is of lines and arcs of edges, and turns where they meet.
+            PathSegment::Turn { .. } | PathSegment::Kink { .. } => {
+                return Err(InvalidInput::Disconnected("path with a turn of its own"));
+            }
+            PathSegment::Cusp => return Err(InvalidInput::Disconnected("path in reverse gear")),
         };
         heading = placed.heading_at_end();
         segments.push(last);
@@ -219,8 +222,8 @@ fn bounds(shapes: &[PlacedSegment], at: [f64; 2]) -> [[f64; 2]; 2] {
     for placed in shapes {
         // No point of an arc is farther from its ends than its length.
         let (ends, room) = match placed.shape {
-            PathSegment::Line { .. } | PathSegment::Cusp => ([placed.start, placed.end()], 0.0),
             PathSegment::Arc { .. } => ([placed.start, placed.end()], 0.5 * placed.shape.length()),
+            _ => ([placed.start, placed.end()], 0.0),
         };
         for end in ends {
             for axis in 0..2 {

@@ -1,14 +1,14 @@
 //! What a robot did from the beginning on, as an agent of a scenario: its path, and its speed on it.
 //!
-//! Turns in place have a length here, of a disc none and of an outline that of its lever; in a scenario they are arcs of [`TURN`] radius. So
-//! the motion is cut at the stops before and after them, and scaled onto the length that the scenario has in between. A disc turns while it
-//! stands.
+//! Turns in place of an outline have the length of its lever here, and those of a disc none, which turns while it stands; in a scenario
+//! they are in radians. So the motion is cut at the stops before and after them, and scaled onto the length, or the angle, that the scenario
+//! has in between.
 
 use super::robot::{LifelongRobot, RobotPhase};
 use super::route_element::{STRAIGHT, wrapped};
 use super::route_graph::RouteGraph;
 use pcr_core::{Curve, TurnSide};
-use pcr_formats::scenario::{Agent, MotionSpec, PathSegment, PlacedSegment, TURN};
+use pcr_formats::scenario::{Agent, MotionPiece, MotionSpec, PathSegment, PlacedSegment};
 use std::collections::VecDeque;
 
 /// Lengths that differ by less are equal \[m\].
@@ -17,7 +17,7 @@ const NEAR: f64 = 1e-7;
 /// Time that is rounding and nothing else \[s\].
 const SHORT: f64 = 1e-9;
 
-/// Longest time of a turn of a disc \[s\]: a slower one would be lost in the rounding of speeds.
+/// Longest time of a turn of a disc \[s\]: then it waits.
 const SLOWEST: f64 = 5.0;
 
 /// Angle that is rounding and nothing else \[rad\].
@@ -67,17 +67,18 @@ impl DrivenPath {
         let missing = wrapped(heading - self.heading);
         if missing != 0.0
             && missing.abs() < STRAIGHT
-            && let Some(DrivenSegment { shape: PathSegment::Arc { radius: TURN, sweep }, driven, is_standing_turn }) =
-                self.segments.pop_if(|last| matches!(last.shape, PathSegment::Arc { radius: TURN, .. }))
+            && let Some(DrivenSegment { shape: PathSegment::Turn { sweep }, driven, is_standing_turn }) =
+                self.segments.pop_if(|last| matches!(last.shape, PathSegment::Turn { .. }))
         {
             (self.at, self.heading) = self.before;
             self.driven = driven[0];
-            let shape = PathSegment::Arc { radius: TURN, sweep: sweep + missing };
-            self.push(shape, driven[1] - driven[0], is_standing_turn);
+            self.push(PathSegment::Turn { sweep: sweep + missing }, driven[1] - driven[0], is_standing_turn);
         }
         let sweep = wrapped(heading - self.heading);
-        if sweep.abs() > NO_TURN {
-            self.push(PathSegment::Arc { radius: TURN, sweep }, 0.0, sweep.abs() > STRAIGHT);
+        if sweep.abs() > STRAIGHT {
+            self.push(PathSegment::Turn { sweep }, 0.0, true);
+        } else if sweep.abs() > NO_TURN {
+            self.push(PathSegment::Kink { sweep }, 0.0, false);
         }
     }
 
@@ -123,7 +124,8 @@ pub(super) fn agent(
         let [x, y] = site.points[start];
         [x, y, site.first_heading(start).unwrap_or(0.0)]
     });
-    let motion = MotionSpec::Profile { v0: 0.0, pieces: pieces(&path, robot, &before, length)? };
+    let pieces = pieces(&mut path, robot, &before, length)?;
+    let motion = MotionSpec::Profile { v0: 0.0, pieces };
     Ok(Agent {
         id,
         label: label.to_owned(),
@@ -151,7 +153,7 @@ fn add(path: &mut DrivenPath, site: &RouteGraph, atom: usize, mut left: f64) {
             let part = placed.part(0.0, keep);
             match part.shape {
                 PathSegment::Line { .. } => path.line(part.start, part.end(), keep),
-                PathSegment::Arc { .. } | PathSegment::Cusp => {
+                _ => {
                     path.face(part.start, part.heading);
                     path.push(part.shape, keep, false);
                 }
@@ -180,27 +182,46 @@ fn add(path: &mut DrivenPath, site: &RouteGraph, atom: usize, mut left: f64) {
                 path.begin(point(0.0), segment.heading_at(0.0).0);
                 let missing = wrapped(segment.heading_at(0.0).0 - path.heading);
                 let sweep = signed(keep / lever, turn) + missing;
-                path.push(PathSegment::Arc { radius: TURN, sweep }, keep, false);
+                let is_passed = sweep.abs() <= STRAIGHT;
+                path.push(
+                    if is_passed { PathSegment::Kink { sweep } } else { PathSegment::Turn { sweep } },
+                    keep,
+                    false,
+                );
             }
         }
     }
 }
 
-/// Durations \[s\] and accelerations \[m/s²\] of motions with these durations and speeds at their ends. A reader sums them up, so each
-/// takes back the rounding of those before it: a turn in place is slower than what rounding would leave after a long way.
-fn balanced(motions: Vec<(f64, f64)>) -> Vec<(f64, f64)> {
-    let mut speed = 0.0;
-    let piece = |(duration, end): (f64, f64)| {
-        let gain = (end - speed) / duration;
-        // At a stop a reader takes what rounding leaves for none.
-        speed = if end == 0.0 { 0.0 } else { speed + gain * duration };
-        (duration, gain)
-    };
-    motions.into_iter().filter(|motion| motion.0 > 0.0).map(piece).collect()
+/// A part of a motion.
+struct DrivenPhase {
+    /// \[s\]
+    duration: f64,
+    /// Speed at its end \[m/s\]; in place \[rad/s\].
+    end: f64,
+    in_place: bool,
 }
 
-/// Durations \[s\] and accelerations \[m/s²\] along the path.
-fn pieces(path: &DrivenPath, robot: &LifelongRobot, before: &[f64], length: f64) -> Result<Vec<(f64, f64)>, String> {
+/// These motions as pieces of a profile. A reader sums them up, so each takes back the rounding of those before it.
+fn balanced(motions: Vec<DrivenPhase>) -> Vec<MotionPiece> {
+    let (mut speed, mut rotation) = (0.0, 0.0);
+    let piece = |DrivenPhase { duration, end, in_place }| {
+        let now = if in_place { &mut rotation } else { &mut speed };
+        let acceleration = (end - *now) / duration;
+        // At a stop a reader takes what rounding leaves for none.
+        *now = if end == 0.0 { 0.0 } else { *now + acceleration * duration };
+        MotionPiece { duration, acceleration, in_place }
+    };
+    motions.into_iter().filter(|motion| motion.duration > 0.0).map(piece).collect()
+}
+
+/// The profile along the path. A turn of a disc that it does not stand for becomes a kink.
+fn pieces(
+    path: &mut DrivenPath,
+    robot: &LifelongRobot,
+    before: &[f64],
+    length: f64,
+) -> Result<Vec<MotionPiece>, String> {
     let borders: Vec<f64> = path.segments.iter().flat_map(|segment| segment.driven).collect();
     let is_border = |at: f64| borders.iter().any(|border| (border - at).abs() < NEAR);
     // Stops where a segment ends, and the end.
@@ -231,37 +252,41 @@ fn pieces(path: &DrivenPath, robot: &LifelongRobot, before: &[f64], length: f64)
             if is_still && done.is_empty() { stood += phase.duration } else { done.push(phase) }
         }
         // The segments between the two stops.
-        let (mut turns, mut ahead) = (0.0, 0.0);
-        while let Some(segment) = path.segments.get(next) {
+        let (mut standing, mut turning, mut ahead) = (0.0, 0.0, 0.0);
+        while let Some(segment) = path.segments.get_mut(next) {
             let is_turn = segment.is_standing_turn;
             let is_inside = if is_turn { segment.driven[0] < to - NEAR } else { segment.driven[1] < to + NEAR };
             if !is_inside {
                 break;
             }
             let is_first = segment.driven[0] < from + NEAR;
-            if is_turn && is_first {
-                turns += segment.shape.length()
-            } else {
-                ahead += segment.shape.length()
+            match segment.shape {
+                PathSegment::Turn { sweep } if is_turn && is_first => standing += sweep.abs(),
+                PathSegment::Turn { sweep } if is_turn => segment.shape = PathSegment::Kink { sweep },
+                PathSegment::Turn { sweep } => turning += sweep.abs(),
+                shape => ahead += shape.length(),
             }
             next += 1;
         }
-        if turns > 0.0 {
-            if stood <= 0.0 {
-                return Err("a turn in place without a stop".into());
-            }
-            let time = stood.min(SLOWEST);
-            pieces.extend([(0.5 * time, 2.0 * turns / time), (0.5 * time, 0.0), (stood - time, 0.0)]);
-        } else if stood > 0.0 {
-            pieces.push((stood, 0.0));
+        if (standing > 0.0 && stood <= 0.0) || (turning > 0.0 && ahead > 0.0) {
+            return Err("a turn in place without a stop".into());
         }
+        let mut phase = |duration, end, in_place| pieces.push(DrivenPhase { duration, end, in_place });
+        if standing > 0.0 {
+            let time = stood.min(SLOWEST);
+            phase(0.5 * time, 2.0 * standing / time, true);
+            phase(0.5 * time, 0.0, true);
+            stood -= time;
+        }
+        phase(stood, 0.0, false);
         let driven: f64 = done.iter().map(|phase| 0.5 * (phase.speed[0] + phase.speed[1]) * phase.duration).sum();
-        if ahead > 0.0 && driven <= 0.0 {
+        let way = ahead + turning;
+        if way > 0.0 && driven <= 0.0 {
             return Err("a path without a motion".into());
         }
-        let scale = if driven > 0.0 { ahead / driven } else { 0.0 };
-        for phase in done {
-            pieces.push((phase.duration, phase.speed[1] * scale));
+        let scale = if driven > 0.0 { way / driven } else { 0.0 };
+        for own in done {
+            phase(own.duration, own.speed[1] * scale, turning > 0.0);
         }
     }
     Ok(balanced(pieces))

@@ -168,7 +168,7 @@ mod tests {
             .iter()
             .filter_map(|segment| match segment {
                 PathSegment::Arc { sweep, .. } => Some(sweep.signum()),
-                PathSegment::Line { .. } | PathSegment::Cusp => None,
+                _ => None,
             })
             .collect();
         // Under the first one, which is then on the left, and over the second.

@@ -5,7 +5,7 @@ use super::outline_contact::{BodyTrack, meetings};
 use super::speed_limited_path::SpeedLimitedPath;
 use super::vector::{PlaneVector, norm, sub};
 use pcr_core::Limits;
-use pcr_formats::scenario::{Agent, Labels, MotionSpec, PathSegment, Scenario, SegmentPhase, TURN};
+use pcr_formats::scenario::{Agent, Labels, MotionSpec, PathSegment, Scenario, SegmentPhase};
 use pcr_formats::warning::WarningCode;
 use pcr_planning::failure::ComputationError;
 use pcr_planning::fleet::{ConvexBody, Fleet};
@@ -110,10 +110,11 @@ impl SimulationTask {
             let tops = tops(agent);
             let top = |segment| fleet.source(place, segment).and_then(|source| tops.get(source).copied());
             let body = ConvexBody::of_agent(agent).map_err(|_| ComputationError::Robot(agent.id))?;
-            let course = if body.is_disc() && !agent.changes_gear() {
+            let stands = body.is_disc() && !agent.changes_gear();
+            let course = if stands && !agent.turns_in_place() {
                 SpeedLimitedPath::of(&motion).with_speed_limits(|segment| top(segment).unwrap_or(f64::INFINITY))
             } else {
-                SpeedLimitedPath::of_agent(agent, &tops).map_err(|_| ComputationError::Robot(agent.id))?
+                SpeedLimitedPath::of_agent(agent, &tops, stands).map_err(|_| ComputationError::Robot(agent.id))?
             };
             if body.excess() > 0.0 {
                 warnings.push(WarningCode::ConvexHull.text(format_args!(
@@ -196,15 +197,16 @@ fn overlap(own: &StandingObstacle, other: &StandingObstacle) -> f64 {
     -meetings(&BodyTrack::new(&own.body, &a, &at), &BodyTrack::new(&other.body, &b, &its)).1
 }
 
-/// The largest speed of a profile on each segment \[m/s\], and that of a turn in place in the mean, without the waits; infinite without a profile.
+/// The largest speed of a profile on each segment \[m/s\], and that of a turn in place in the mean \[rad/s\], without the waits; infinite
+/// without a profile.
 fn tops(agent: &Agent) -> Vec<f64> {
     if matches!(agent.motion, MotionSpec::RestToRest { .. }) {
         return Vec::new();
     }
     let top = |(segment, parts): (&PathSegment, Vec<SegmentPhase>)| {
-        let moves = || parts.iter().filter(|part| part.before > 0.0 || part.after > 0.0);
+        let moves = || parts.iter().filter(|part| part.moves());
         let top = match *segment {
-            PathSegment::Arc { radius: TURN, .. } => segment.length() / moves().map(|part| part.duration).sum::<f64>(),
+            PathSegment::Turn { sweep } => sweep.abs() / moves().map(|part| part.duration).sum::<f64>(),
             _ => moves().map(|part| part.before.max(part.after)).fold(0.0, f64::max),
         };
         if top > 0.0 { top } else { f64::INFINITY }
@@ -214,21 +216,21 @@ fn tops(agent: &Agent) -> Vec<f64> {
 
 /// The limits of an agent. For a profile: its largest speed and acceleration; without any acceleration, one second to the top
 /// speed. A profile that begins or ends under way may have hardly any acceleration; the simulated robot then gets to the top speed within
-/// the duration of the profile. (Every profile from rest to rest does so by itself.) If it only turns in place, the durations of its
-/// turns contain all ramps, and 1 m/s² adds none.
+/// the duration of the profile. (Every profile from rest to rest does so by itself.)
 fn limits(agent: &Agent) -> Limits<f64> {
-    let turns = |segment: &PathSegment| matches!(segment, PathSegment::Arc { radius: TURN, .. } | PathSegment::Cusp);
     match &agent.motion {
         MotionSpec::RestToRest { v_max, a_max } => Limits { speed: *v_max, acceleration: *a_max },
-        MotionSpec::Profile { v0, pieces } => {
-            let (mut now, mut speed, mut acceleration) = (*v0, *v0, 0.0_f64);
+        // The duration of a turn contains all ramps, and these add none.
+        MotionSpec::Profile { .. } if agent.length() == 0.0 => Limits { speed: 1.0, acceleration: 1.0 },
+        MotionSpec::Profile { .. } => {
+            let (v0, pieces) = agent.motion.pieces(agent.length());
+            let (mut now, mut speed, mut acceleration) = (v0, v0, 0.0_f64);
             for (duration, accel) in pieces {
                 now += accel * duration;
                 speed = speed.max(now);
                 acceleration = acceleration.max(accel.abs());
             }
             let acceleration = match acceleration {
-                _ if agent.path.iter().all(turns) => 1.0,
                 some if some > 0.0 => some.max(speed / agent.duration()),
                 _ => speed,
             };

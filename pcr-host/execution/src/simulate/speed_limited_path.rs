@@ -5,12 +5,15 @@ use super::braking::{SpeedLimitSpan, speed_before, speeds_to_rest, to_rest};
 use pcr_core::{
     Curve, InvalidInput, Limits, Motion, PathRef, Phase, Point, Pose, ProfileRef, Radians, Segment, TurnSide,
 };
-use pcr_formats::scenario::{Agent, KINK, PathSegment, TURN};
+use pcr_formats::scenario::{Agent, PathSegment};
 use pcr_planning::fleet::{ConvexBody, speed};
 use std::f64::consts::PI;
 
 /// Travelled length for each radian of a turn in place of an outline \[m\]: so short that ramps of the speed take no time there.
 const LEVER: f64 = 1e-3;
+
+/// The same of a disc \[m\], which stands meanwhile: so short that a robot is at all of it once it is near its beginning.
+const STANDING_LEVER: f64 = 1e-7;
 
 /// An outline has turned if less than this is left of a turn \[rad\].
 const TURNED: f64 = 1e-4;
@@ -32,11 +35,13 @@ struct SegmentLimit {
     top: f64,
     /// In reverse gear.
     reverse: bool,
+    /// A turn in place for which the robot stands.
+    stands: bool,
 }
 
 impl SegmentLimit {
     /// In forward gear, without a speed limit.
-    const NONE: Self = Self { top: f64::INFINITY, reverse: false };
+    const NONE: Self = Self { top: f64::INFINITY, reverse: false, stands: false };
 }
 
 /// A place where a robot stands: a turn in place, or a change of gear.
@@ -51,31 +56,31 @@ pub(super) struct TurnInPlace {
 }
 
 impl SpeedLimitedPath {
-    /// A course along these segments from a pose, without turns in place that have a length.
+    /// A course along these segments from a pose; turns in place have a length.
     ///
     /// # Errors
     /// [`InvalidInput`] if a length or a coordinate is out of range.
     pub fn new(start: Pose<f64>, path: &[PathSegment]) -> Result<Self, InvalidInput> {
-        Self::along(start, path, |_| f64::INFINITY, 0.0)
+        Self::along(start, path, |_| f64::INFINITY, false)
     }
 
-    /// The course of an agent with an outline or with gears, with the speed limits of its segments \[m/s\], infinite where there are no
-    /// more. Its turns in place have a length.
+    /// The course of an agent with the speed limits of its segments \[m/s\], of turns in place \[rad/s\], infinite where there are no more.
+    /// If it is a disc, it may stand while it turns; otherwise turns are driven.
     ///
     /// # Errors
     /// As [`SpeedLimitedPath::new`].
-    pub(super) fn of_agent(agent: &Agent, tops: &[f64]) -> Result<Self, InvalidInput> {
+    pub(super) fn of_agent(agent: &Agent, tops: &[f64], stands: bool) -> Result<Self, InvalidInput> {
         let [x, y, heading] = agent.start;
         let start = Pose { position: Point::new(x, y), heading: Radians(heading) };
-        Self::along(start, &agent.path, |place| tops.get(place).copied().unwrap_or(f64::INFINITY), TURN)
+        Self::along(start, &agent.path, |place| tops.get(place).copied().unwrap_or(f64::INFINITY), stands)
     }
 
-    /// A course along segments with speed limits \[m/s\], on which arcs up to a radius \[m\] are turns in place.
+    /// A course along segments with speed limits \[m/s\], of turns in place \[rad/s\], for which the robot may stand.
     fn along(
         start: Pose<f64>,
         path: &[PathSegment],
         top: impl Fn(usize) -> f64,
-        largest_turn: f64,
+        stands: bool,
     ) -> Result<Self, InvalidInput> {
         let mut reverse = false;
         let mut course = Self::standing(start)?;
@@ -88,17 +93,15 @@ impl SpeedLimitedPath {
                     reverse = !reverse;
                     continue;
                 }
-                PathSegment::Arc { radius, sweep } => {
-                    let turn = if sweep > 0.0 { TurnSide::Left } else { TurnSide::Right };
-                    if radius <= largest_turn {
-                        (Curve::Pivot { lever: LEVER, turn }, LEVER * sweep.abs(), top * (LEVER / radius))
-                    } else {
-                        (Curve::Arc { radius, turn }, radius * sweep.abs(), top)
-                    }
+                PathSegment::Arc { radius, sweep } => (Curve::Arc { radius, turn: side(sweep) }, segment.length(), top),
+                PathSegment::Turn { sweep } | PathSegment::Kink { sweep } => {
+                    let lever = if stands { STANDING_LEVER } else { LEVER };
+                    (Curve::Pivot { lever, turn: side(sweep) }, lever * sweep.abs(), top * lever)
                 }
             };
+            let stands = stands && segment.takes_turning();
             for _ in 0..whole as usize {
-                course.push(curve, length / whole, SegmentLimit { top, reverse })?;
+                course.push(curve, length / whole, SegmentLimit { top, reverse, stands })?;
             }
         }
         course.path()?;
@@ -191,7 +194,7 @@ impl SpeedLimitedPath {
     /// How near to its end \[m\] a robot has arrived, of these two: where it drives, and where it turns in place.
     pub(super) fn end_tolerance(&self, driven: f64) -> f64 {
         match self.segments.last().map(Segment::curve) {
-            Some(Curve::Pivot { lever, .. }) => TURNED * lever,
+            Some(Curve::Pivot { lever, .. }) if !self.limits.last().is_some_and(|limit| limit.stands) => TURNED * lever,
             _ => driven,
         }
     }
@@ -245,7 +248,7 @@ impl SpeedLimitedPath {
     /// The course after a time \[s\] of its first turn in place.
     #[must_use]
     pub(super) fn turned(mut self, time: f64) -> Self {
-        let turn = self.in_place(0).filter(|turn| time > 0.0 && is_turn(&self.segments[turn.segment]));
+        let turn = self.in_place(0).filter(|turn| time > 0.0 && self.limits[turn.segment].stands);
         if let Some(TurnInPlace { segment, duration, .. }) = turn {
             // At least a frame is left.
             self.limits[segment].top *= duration / (duration - time).max(FRAME);
@@ -272,11 +275,10 @@ impl SpeedLimitedPath {
 
     /// The speed in a frame from a length on \[m\] with which a robot keeps to all that follows; turns in place are left aside \[m/s\].
     pub(super) fn allowed(&self, length: f64, acceleration: f64, frame: f64) -> f64 {
-        let tops = self.limits.iter().map(|limit| limit.top);
-        let ahead = self.segments.iter().zip(tops).filter(|(segment, top)| {
-            top.is_finite() && !is_turn(segment) && segment.from() + segment.length() > length
+        let ahead = self.segments.iter().zip(&self.limits).filter(|(segment, limit)| {
+            limit.top.is_finite() && !limit.stands && segment.from() + segment.length() > length
         });
-        ahead.fold(f64::INFINITY, |allowed: f64, (segment, top)| {
+        ahead.fold(f64::INFINITY, |allowed: f64, (segment, &SegmentLimit { top, .. })| {
             let before = segment.from() - length;
             allowed.min(if before > 0.0 { speed_before(before, top, acceleration, frame) } else { top })
         })
@@ -285,9 +287,9 @@ impl SpeedLimitedPath {
     /// The first turn in place that takes time, or change of gear, among its segments from this place on.
     pub(super) fn in_place(&self, from: usize) -> Option<TurnInPlace> {
         let segments = self.segments.iter().zip(&self.limits).enumerate().skip(from);
-        segments.into_iter().find_map(|(place, (segment, SegmentLimit { top, .. }))| {
+        segments.into_iter().find_map(|(place, (segment, SegmentLimit { top, stands, .. }))| {
             let duration = segment.length() / top;
-            if is_turn(segment) && duration > 0.0 {
+            if *stands && duration > 0.0 {
                 return Some(TurnInPlace { segment: place, at: segment.from(), duration });
             }
             let at = segment.from() + segment.length();
@@ -304,16 +306,16 @@ impl SpeedLimitedPath {
     /// The least radius of an arc that is driven \[m\]; infinite without any.
     pub(super) fn least_radius(&self) -> f64 {
         let radius = |segment: &Segment<f64>| match segment.curve() {
-            Curve::Arc { radius, .. } if !is_turn(segment) => radius,
+            Curve::Arc { radius, .. } => radius,
             _ => f64::INFINITY,
         };
         self.segments.iter().map(radius).fold(f64::INFINITY, f64::min)
     }
 }
 
-/// Whether a segment is a turn in place, and no joint that is passed without a stop.
-fn is_turn(segment: &Segment<f64>) -> bool {
-    matches!(segment.curve(), Curve::Arc { radius: TURN, .. }) && segment.length() > KINK * TURN
+/// The side to which it turns by an angle.
+fn side(sweep: f64) -> TurnSide {
+    if sweep > 0.0 { TurnSide::Left } else { TurnSide::Right }
 }
 
 /// A course with the motion of an agent on it.

@@ -131,8 +131,8 @@ fn point_at(begin: [f64; 2], pieces: &[PlacedSegment], length: f64) -> [f64; 2] 
         let own = piece.shape.length();
         if rest < own {
             let shape = match piece.shape {
-                PathSegment::Line { .. } | PathSegment::Cusp => PathSegment::Line { length: rest.max(0.0) },
                 PathSegment::Arc { radius, sweep } => PathSegment::Arc { radius, sweep: sweep * rest.max(0.0) / own },
+                _ => PathSegment::Line { length: rest.max(0.0) },
             };
             return PlacedSegment { shape, ..*piece }.end();
         }
@@ -338,9 +338,9 @@ fn parameter(curve: &RationalBezier, second: &PlacedSegment) -> f64 {
 /// the curve is too far from it to tell.
 pub(super) fn distance(curve: &RationalBezier, piece: &PlacedSegment) -> f64 {
     let curvature = match piece.shape {
-        PathSegment::Line { .. } | PathSegment::Cusp => 0.0,
         PathSegment::Arc { sweep, .. } if sweep.abs() > SWEEP => return f64::INFINITY,
         PathSegment::Arc { radius, sweep } => 1.0_f64.copysign(sweep) / radius,
+        _ => 0.0,
     };
     let start = framed(curve, piece.start, piece.heading);
     let end = framed(curve, piece.end(), piece.heading_at_end());
@@ -386,13 +386,13 @@ mod tests {
                     let across = (y - piece.start[1]) * cos - (x - piece.start[0]) * sin;
                     (0.0..=length).contains(&along).then_some(across.abs())
                 }
-                PathSegment::Cusp => None,
                 PathSegment::Arc { radius, sweep } => {
                     let side = radius.copysign(sweep);
                     let from = [x - piece.start[0] + side * sin, y - piece.start[1] - side * cos];
                     let angle = (from[1].atan2(from[0]) - piece.heading) * sweep.signum() + FRAC_PI_2;
                     (angle.rem_euclid(2.0 * PI) <= sweep.abs()).then_some((from[0].hypot(from[1]) - radius).abs())
                 }
+                _ => None,
             };
             inner.into_iter().chain(ends).fold(f64::INFINITY, f64::min)
         };

@@ -33,8 +33,8 @@ pub(super) fn between(curve: &RationalBezier, piece: &PlacedSegment) -> f64 {
 fn halved(curve: &RationalBezier, piece: &PlacedSegment, halvings: u32) -> f64 {
     let points = framed(curve, piece.start, piece.heading);
     let curvature = match piece.shape {
-        PathSegment::Line { .. } | PathSegment::Cusp => 0.0,
         PathSegment::Arc { radius, sweep } => 1.0_f64.copysign(sweep) / radius,
+        _ => 0.0,
     };
     let hull = by_polygon(&points, curvature);
     let bound = if hull < FRAC_PI_2 { hull.min(by_speed(&points, curvature).unwrap_or(PI)) } else { hull };
@@ -115,8 +115,8 @@ mod tests {
             for piece in [line, arc(2.0, 0.5), arc(20.0, 0.05), arc(2.0, -0.5)] {
                 let bound = between(&curve, &piece);
                 let curvature = match piece.shape {
-                    PathSegment::Line { .. } | PathSegment::Cusp => 0.0,
                     PathSegment::Arc { radius, sweep } => 1.0_f64.copysign(sweep) / radius,
+                    _ => 0.0,
                 };
                 let mut most = 0.0_f64;
                 for k in 1..1000 {

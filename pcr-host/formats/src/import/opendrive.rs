@@ -48,8 +48,8 @@ const WINDINGS: f64 = 100.0;
 
 fn windings(shape: &PathSegment) -> f64 {
     match shape {
-        PathSegment::Line { .. } | PathSegment::Cusp => 0.0,
         PathSegment::Arc { sweep, .. } => sweep.abs() / TAU,
+        _ => 0.0,
     }
 }
 
@@ -308,8 +308,8 @@ fn close(curve: &mut Vec<PlacedSegment>) -> [f64; 3] {
         let asked = *piece;
         if distance(at, asked.start) > CLOSED {
             *piece = match asked.shape {
-                PathSegment::Line { .. } | PathSegment::Cusp => PlacedSegment::line(at, asked.end()),
                 PathSegment::Arc { .. } => PlacedSegment { start: at, ..asked },
+                _ => PlacedSegment::line(at, asked.end()),
             };
         }
         turned = turned.max(wrapped(piece.heading - asked.heading).abs());

@@ -1,12 +1,11 @@
 //! Converts lines and arcs anywhere in the plane to one path: a G1 chain of lines and arcs.
 //!
-//! Where two pieces meet at an angle, the vehicle turns in place: an arc of [`TURN`] radius, on which it comes to rest
-//! if the angle is more than [`KINK`]. Where the vehicle goes on in the other gear, it comes to rest as well, and turns by what its own
+//! Where two pieces meet at an angle, the vehicle turns in place, or passes without a stop if the angle is no more than [`KINK`]. Where the vehicle goes on in the other gear, it comes to rest as well, and turns by what its own
 //! heading differs. A line is aimed at its end from the point that the path has really reached, so
-//! that displacements by turns and gaps do not add up. The largest distance from the requested geometry is recorded.
+//! that gaps do not add up. The largest distance from the requested geometry is recorded.
 
 use crate::plane_geometry::{distance, within_half_turn, wrapped};
-use crate::scenario::{KINK, PathSegment, PlacedSegment, TURN};
+use crate::scenario::{KINK, PathSegment, PlacedSegment};
 use std::f64::consts::PI;
 
 /// Length of a line that is left out \[m\]: its direction may be rounding and nothing else.
@@ -27,8 +26,13 @@ pub(super) struct LimitedSegment {
     pub(super) speed: Option<f64>,
     /// Largest speed of rotation \[rad/s\], where it is limited.
     pub(super) rotation: Option<f64>,
-    /// A turn in place or a change of gear, before and after which the vehicle is at rest.
-    pub(super) in_place: bool,
+}
+
+impl LimitedSegment {
+    /// Whether the vehicle is at rest before and after it.
+    pub(super) fn is_stop(&self) -> bool {
+        matches!(self.shape, PathSegment::Turn { .. } | PathSegment::Cusp)
+    }
 }
 
 /// A path in the making.
@@ -88,7 +92,7 @@ impl LimitedPathBuilder {
         }
         self.face(at, aim.heading);
         self.deviation = self.deviation.max(distance(self.at, from));
-        self.push(PlacedSegment::line(self.at, to).shape, false);
+        self.push(PlacedSegment::line(self.at, to).shape);
         self.deviation = self.deviation.max(distance(self.at, to));
     }
 
@@ -97,7 +101,7 @@ impl LimitedPathBuilder {
         match piece.shape {
             PathSegment::Line { .. } => self.line(piece.start, piece.end()),
             // No curve of a file has one.
-            PathSegment::Cusp => {}
+            PathSegment::Turn { .. } | PathSegment::Kink { .. } | PathSegment::Cusp => {}
             PathSegment::Arc { radius, sweep } => {
                 if radius * sweep == 0.0 {
                     return;
@@ -106,7 +110,7 @@ impl LimitedPathBuilder {
                 // Displaced as a whole, and turned by what the headings differ.
                 let turned = within_half_turn(self.heading - piece.heading).abs() * radius * sweep.abs().min(PI);
                 self.deviation = self.deviation.max(distance(self.at, piece.start) + turned);
-                self.push(piece.shape, false);
+                self.push(piece.shape);
             }
         }
     }
@@ -120,11 +124,13 @@ impl LimitedPathBuilder {
         }
         if self.reverse[0] != self.reverse[1] {
             self.reverse[0] = self.reverse[1];
-            self.push(PathSegment::Cusp, true);
+            self.push(PathSegment::Cusp);
         }
         let sweep = within_half_turn(heading - self.heading);
-        if sweep.abs() > STRAIGHT {
-            self.push(PathSegment::Arc { radius: TURN, sweep }, sweep.abs() > KINK);
+        if sweep.abs() > KINK {
+            self.push(PathSegment::Turn { sweep });
+        } else if sweep.abs() > STRAIGHT {
+            self.push(PathSegment::Kink { sweep });
         }
     }
 
@@ -132,15 +138,15 @@ impl LimitedPathBuilder {
     pub(super) fn turn(&mut self, at: [f64; 2], heading: f64, sweep: f64) {
         self.face(at, heading);
         if sweep != 0.0 {
-            self.push(PathSegment::Arc { radius: TURN, sweep }, true);
+            self.push(PathSegment::Turn { sweep });
         }
     }
 
-    fn push(&mut self, shape: PathSegment, in_place: bool) {
+    fn push(&mut self, shape: PathSegment) {
         let placed = PlacedSegment { start: self.at, heading: self.heading, shape };
         (self.at, self.heading) = (placed.end(), placed.heading_at_end());
         self.length += shape.length();
-        let next = LimitedSegment { shape, speed: self.speed, rotation: self.rotation, in_place };
+        let next = LimitedSegment { shape, speed: self.speed, rotation: self.rotation };
         let last = self.stretches.last_mut().filter(|last| (last.speed, last.rotation) == (next.speed, next.rotation));
         match (last.map(|last| &mut last.shape), shape) {
             // Straight on: one line.
@@ -181,9 +187,8 @@ mod tests {
         }
         let trace = tracer.finish([9.0, 9.0]);
         assert_eq!(trace.start, [0.0, 0.0, 0.0]);
-        // The line before ends up to two radii away, and the turn adds as much.
-        assert!(trace.deviation <= 4.000_01 * TURN, "{}", trace.deviation);
-        assert_eq!(trace.stretches.iter().filter(|stretch| stretch.in_place).count(), 399);
+        assert_eq!(trace.deviation, 0.0);
+        assert_eq!(trace.stretches.iter().filter(|stretch| stretch.is_stop()).count(), 399);
     }
 
     #[test]
@@ -195,7 +200,7 @@ mod tests {
         let trace = tracer.finish([0.0, 0.0]);
         assert!((trace.deviation - 1e-3).abs() < 1e-8);
         assert_eq!(trace.stretches.len(), 3);
-        assert!(trace.stretches.iter().all(|stretch| !stretch.in_place));
+        assert!(trace.stretches.iter().all(|stretch| !stretch.is_stop()));
     }
 
     #[test]
@@ -235,6 +240,6 @@ mod tests {
         tracer.line([0.0, 0.0], [1.0, 0.0]);
         tracer.line([1.0, 0.0], [0.0, 0.0]);
         let trace = tracer.finish([0.0, 0.0]);
-        assert!(matches!(trace.stretches[1].shape, PathSegment::Arc { sweep, .. } if (sweep.abs() - PI).abs() < 1e-12));
+        assert!(matches!(trace.stretches[1].shape, PathSegment::Turn { sweep } if (sweep.abs() - PI).abs() < 1e-12));
     }
 }

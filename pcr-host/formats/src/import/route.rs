@@ -60,7 +60,7 @@ impl RouteStep<'_> {
         let rotation = self.edge.rotation.unwrap_or(f64::INFINITY);
         let bends = self.edge.curve.iter().filter_map(|piece| match piece.shape {
             PathSegment::Arc { radius, .. } => Some(radius * rotation),
-            PathSegment::Line { .. } | PathSegment::Cusp => None,
+            _ => None,
         });
         bends.chain(self.speed()).fold(fastest, f64::min)
     }

@@ -229,7 +229,7 @@ mod tests {
     fn radii(fit: &BiarcFit) -> Vec<f64> {
         let radius = |piece: &PlacedSegment| match piece.shape {
             PathSegment::Arc { radius, .. } => Some(radius),
-            PathSegment::Line { .. } | PathSegment::Cusp => None,
+            _ => None,
         };
         fit.pieces.iter().filter_map(radius).collect()
     }

@@ -2,54 +2,59 @@
 //!
 //! Between the speeds at two joints, a segment is travelled with full acceleration, at its speed limit, and with full
 //! deceleration. The speeds at the joints follow from a forward pass (which speeds can be reached) and a backward pass
-//! (from which speeds the vehicle can brake). A turn in place of angle θ(t) is the motion ε θ(t) on its arc of radius
-//! ε. At a change of gear it is at rest.
+//! (from which speeds the vehicle can brake). A turn in place is one in radians. Before and after it, and at a change of gear, the vehicle is
+//! at rest.
 
 use super::VehicleTraits;
 use super::path_builder::LimitedSegment;
-use crate::scenario::{MotionSpec, PathSegment, TURN};
+use crate::scenario::{MotionPiece, MotionSpec, PathSegment};
 
-/// Limits of one segment.
+/// Limits of one segment: in metres, of a turn in place in radians.
 #[derive(Clone, Copy, Debug)]
 struct SegmentLimits {
     length: f64,
     speed: f64,
     acceleration: f64,
-    in_place: bool,
+    is_turn: bool,
+    is_stop: bool,
 }
 
 fn limited(stretch: &LimitedSegment, vehicle: &VehicleTraits) -> SegmentLimits {
-    let length = stretch.shape.length();
+    let mut length = stretch.shape.length();
     let mut speed = stretch.speed.map_or(vehicle.speed, |limit| limit.min(vehicle.speed));
     let rotation = stretch.rotation.map_or(vehicle.rotation, |limit| limit.min(vehicle.rotation));
     let mut acceleration = vehicle.acceleration;
-    if let PathSegment::Arc { radius, .. } = stretch.shape {
-        if stretch.in_place {
-            speed = radius * rotation;
-            acceleration = radius * vehicle.rotation_acceleration;
-        } else if radius > TURN {
-            speed = speed.min(radius * rotation);
+    let is_turn = match stretch.shape {
+        PathSegment::Turn { sweep } => {
+            (length, speed, acceleration) = (sweep.abs(), rotation, vehicle.rotation_acceleration);
+            true
         }
-    }
-    SegmentLimits { length, speed, acceleration, in_place: stretch.in_place }
+        PathSegment::Arc { radius, .. } => {
+            speed = speed.min(radius * rotation);
+            false
+        }
+        _ => false,
+    };
+    SegmentLimits { length, speed, acceleration, is_turn, is_stop: stretch.is_stop() }
 }
 
 /// The motion from rest to rest in the least time.
 pub(super) fn motion(stretches: &[LimitedSegment], vehicle: &VehicleTraits) -> MotionSpec {
     let limits: Vec<SegmentLimits> = stretches.iter().map(|stretch| limited(stretch, vehicle)).collect();
-    if limits.iter().all(|limit| !limit.in_place && limit.speed >= vehicle.speed) {
+    if limits.iter().all(|limit| !limit.is_stop && limit.speed >= vehicle.speed) {
         return MotionSpec::RestToRest { v_max: vehicle.speed, a_max: vehicle.acceleration };
     }
     let mut pieces = Vec::new();
-    // A change of gear has no length and takes no time.
+    // A kink or a change of gear has no length and takes no time.
     for (limit, [before, after]) in limits.iter().zip(speeds(&limits)).filter(|(limit, _)| limit.length > 0.0) {
         let a = limit.acceleration;
         let peak = ((before * before + after * after) / 2.0 + a * limit.length).sqrt();
         let peak = peak.min(limit.speed).max(before).max(after);
         let cruise = limit.length - (peak * peak - before * before + (peak * peak - after * after)) / (2.0 * a);
-        add(&mut pieces, (peak - before) / a, a);
-        add(&mut pieces, cruise.max(0.0) / peak, 0.0);
-        add(&mut pieces, (peak - after) / a, -a);
+        let phases = [((peak - before) / a, a), (cruise.max(0.0) / peak, 0.0), ((peak - after) / a, -a)];
+        for (duration, acceleration) in phases {
+            add(&mut pieces, MotionPiece { duration, acceleration, in_place: limit.is_turn });
+        }
     }
     MotionSpec::Profile { v0: 0.0, pieces }
 }
@@ -57,7 +62,7 @@ pub(super) fn motion(stretches: &[LimitedSegment], vehicle: &VehicleTraits) -> M
 /// Speeds at the beginning and the end of each segment.
 fn speeds(limits: &[SegmentLimits]) -> Vec<[f64; 2]> {
     let joint = |k: usize| match (k.checked_sub(1).and_then(|before| limits.get(before)), limits.get(k)) {
-        (Some(before), Some(after)) if !before.in_place && !after.in_place => before.speed.min(after.speed),
+        (Some(before), Some(after)) if !before.is_stop && !after.is_stop => before.speed.min(after.speed),
         _ => 0.0,
     };
     let reach = |speed: f64, limit: &SegmentLimits| (speed * speed + 2.0 * limit.acceleration * limit.length).sqrt();
@@ -72,11 +77,13 @@ fn speeds(limits: &[SegmentLimits]) -> Vec<[f64; 2]> {
 }
 
 /// Adds a piece of a profile; one that lasts no time is left out, one that goes on like the one before it is joined to it.
-fn add(pieces: &mut Vec<(f64, f64)>, duration: f64, acceleration: f64) {
+fn add(pieces: &mut Vec<MotionPiece>, piece: MotionPiece) {
     match pieces.last_mut() {
-        _ if duration <= 0.0 => {}
-        Some((before, same)) if *same == acceleration => *before += duration,
-        _ => pieces.push((duration, acceleration)),
+        _ if piece.duration <= 0.0 => {}
+        Some(last) if (last.acceleration, last.in_place) == (piece.acceleration, piece.in_place) => {
+            last.duration += piece.duration;
+        }
+        _ => pieces.push(piece),
     }
 }
 
@@ -97,7 +104,7 @@ mod tests {
     };
 
     fn stretch(shape: PathSegment, speed: Option<f64>, rotation: Option<f64>) -> LimitedSegment {
-        LimitedSegment { shape, speed, rotation, in_place: false }
+        LimitedSegment { shape, speed, rotation }
     }
 
     fn line(speed: Option<f64>) -> LimitedSegment {
@@ -105,7 +112,7 @@ mod tests {
     }
 
     fn turn(rotation: Option<f64>) -> LimitedSegment {
-        LimitedSegment { in_place: true, ..stretch(PathSegment::Arc { radius: TURN, sweep: 1.0 }, None, rotation) }
+        stretch(PathSegment::Turn { sweep: 1.0 }, None, rotation)
     }
 
     #[test]
@@ -115,7 +122,7 @@ mod tests {
         };
         assert_eq!([bend(None, None), bend(None, Some(0.5)), bend(None, Some(3.0))], [1.5, 0.75, 1.5]);
         assert_eq!([bend(Some(0.25), Some(3.0)), bend(Some(9.0), Some(0.5))], [0.25, 0.75]);
-        let speed = |rotation| limited(&turn(rotation), &VEHICLE).speed / TURN;
+        let speed = |rotation| limited(&turn(rotation), &VEHICLE).speed;
         assert_eq!([speed(None), speed(Some(0.5)), speed(Some(3.0))], [1.0, 0.5, 1.0]);
     }
 
@@ -125,8 +132,8 @@ mod tests {
         for free in [vec![], vec![line(None)], vec![line(None), line(Some(2.0))], vec![line(Some(3.0))]] {
             assert_eq!(motion(&free, &VEHICLE), whole);
         }
-        // A vehicle as slow as its turns in place.
-        let slow = VehicleTraits { speed: TURN, ..VEHICLE };
+        // A vehicle that drives as it turns in place.
+        let slow = VehicleTraits { speed: 1.0, acceleration: 0.25, ..VEHICLE };
         let limits = |stretches: &[LimitedSegment]| -> bool { motion(stretches, &VEHICLE) != whole };
         assert!(limits(&[line(None), line(Some(1.5))]) && limits(&[line(None), turn(None)]));
         assert!(matches!(motion(&[turn(None)], &slow), MotionSpec::Profile { .. }));

@@ -5,8 +5,8 @@
 //! is off by at most half of its speed times that, which is nanometres.
 
 use super::ImportError;
-use super::path_builder::LimitedPathBuilder;
-use crate::scenario::{Agent, LIMIT, MOST_SEGMENTS, MotionSpec};
+use super::path_builder::{LimitedPathBuilder, LimitedSegment};
+use crate::scenario::{Agent, LIMIT, MOST_SEGMENTS, MotionSpec, PathSegment};
 
 /// Time in which a speed changes that a plan changes at once \[s\], if that does not take more than half of the acceleration
 /// that is allowed or a quarter of the section.
@@ -46,7 +46,12 @@ pub(super) fn agent(id: u64, radius: f64, stops: &[TimedPoint]) -> Result<Agent,
         }
     }
     let trace = tracer.finish(first);
-    let path = trace.stretches.iter().map(|stretch| stretch.shape).collect();
+    // Corners take no time.
+    let shape = |stretch: &LimitedSegment| match stretch.shape {
+        PathSegment::Turn { sweep } => PathSegment::Kink { sweep },
+        other => other,
+    };
+    let path = trace.stretches.iter().map(shape).collect();
     let motion = sectioned(&sections);
     Ok(Agent { t_start, ..Agent::disc(id, radius + trace.deviation, trace.start, path, motion) })
 }
@@ -64,7 +69,7 @@ pub fn sectioned(sections: &[(f64, f64)]) -> MotionSpec {
         let peak = (length - (before + after) * ramp / 2.0) / (duration - ramp);
         pieces.extend([(ramp, (peak - before) / ramp), (duration - 2.0 * ramp, 0.0), (ramp, (after - peak) / ramp)]);
     }
-    MotionSpec::Profile { v0: 0.0, pieces }
+    MotionSpec::profile(0.0, pieces)
 }
 
 #[cfg(test)]
@@ -107,7 +112,7 @@ mod tests {
             (vec![(1e6, 1.0), (1.0, 1.0)], vec![2e6 / LIMIT, 1e-9]),
             (vec![(1e-9, 2e-9), (4e-9, 2e-9), (2e-9, 2e-9)], vec![0.5e-9; 3]),
         ] {
-            let MotionSpec::Profile { v0, pieces } = sectioned(&sections) else { panic!("no profile") };
+            let (v0, pieces) = sectioned(&sections).pieces(0.0);
             let mut speed = v0;
             for ((&(length, duration), ramp), pieces) in sections.iter().zip(ramps).zip(pieces.chunks(3)) {
                 let mut way = 0.0;

@@ -6,7 +6,7 @@ use super::vehicle::Facing;
 use super::{ImportError, LayoutEdge, LayoutNode, WarningCode, Warnings};
 use crate::footprint::Footprint;
 use crate::plane_geometry::{distance, wrapped};
-use crate::scenario::{Agent, KINK, PathSegment, PlacedSegment, TURN};
+use crate::scenario::{Agent, KINK, PathSegment, PlacedSegment};
 use std::collections::HashMap;
 use std::f64::consts::{FRAC_PI_2, PI, TAU};
 
@@ -94,8 +94,7 @@ pub(super) fn turn_at_nodes(given: &[(usize, f64)], edges: &mut [LayoutEdge], ou
 /// has one of them.
 pub(super) fn warn_of_half_turns<'a>(agents: impl Iterator<Item = (&'a str, &'a Agent)>, warnings: &mut Warnings) {
     for (name, agent) in agents {
-        let half =
-            |shape: &PathSegment| matches!(*shape, PathSegment::Arc { radius: TURN, sweep } if sweep.abs() > PI - KINK);
+        let half = |shape: &PathSegment| matches!(*shape, PathSegment::Turn { sweep } if sweep.abs() > PI - KINK);
         if is_other_backward(agent.footprint.as_ref()) && agent.path.iter().any(half) {
             warnings.add(
                 WarningCode::HalfTurn,
@@ -198,10 +197,7 @@ pub(super) fn along_trajectory(
 
 /// Whether an outline faces so somewhere on a line or an arc.
 fn turns_through(piece: &PlacedSegment, outline: &Footprint, orientation: f64) -> bool {
-    let sweep = match piece.shape {
-        PathSegment::Line { .. } | PathSegment::Cusp => 0.0,
-        PathSegment::Arc { sweep, .. } => sweep,
-    };
+    let sweep = piece.shape.sweep();
     let passes = |orientation: f64| {
         let ahead = (orientation - piece.heading) * if sweep < 0.0 { -1.0 } else { 1.0 };
         (ahead + ROUNDING).rem_euclid(TAU) <= sweep.abs() + 2.0 * ROUNDING
@@ -216,7 +212,8 @@ pub(super) fn heading_beside(piece: &PlacedSegment, point: [f64; 2], within: f64
     let (ahead, left) = (x * cos + y * sin, y * cos - x * sin);
     let whole = piece.shape.length();
     let along = match piece.shape {
-        PathSegment::Line { .. } | PathSegment::Cusp => ahead,
+        PathSegment::Line { .. } => ahead,
+        PathSegment::Turn { .. } | PathSegment::Kink { .. } | PathSegment::Cusp => 0.0,
         PathSegment::Arc { radius, sweep } => {
             // The centre is to the left of an arc that turns left. Half of what is missing to a full turn is before its begin.
             let angle = ahead.atan2(radius - left * sweep.signum());
@@ -226,8 +223,8 @@ pub(super) fn heading_beside(piece: &PlacedSegment, point: [f64; 2], within: f64
     };
     let along = along.clamp(0.0, whole);
     let shape = match piece.shape {
-        PathSegment::Line { .. } | PathSegment::Cusp => PathSegment::Line { length: along },
         PathSegment::Arc { radius, sweep } => PathSegment::Arc { radius, sweep: (along / radius).copysign(sweep) },
+        _ => PathSegment::Line { length: along },
     };
     let part = PlacedSegment { shape, ..*piece };
     (distance(part.end(), point) <= within).then(|| part.heading_at_end())

@@ -1,7 +1,7 @@
 //! Angles of a scenario, in radians or, by keys of their own, in degrees; and warnings about angles that are probably in the wrong unit.
 
 use super::json_fields::{NumberRange, ObjectFields, ScenarioError, figure};
-use super::{PathSegment, Scenario};
+use super::{MotionSpec, PathSegment, Scenario};
 use crate::warning::WarningCode;
 use std::f64::consts::TAU;
 
@@ -25,10 +25,13 @@ pub(super) enum AngleField {
     TurnSpeed,
     /// Largest acceleration of turns in place.
     TurnAcceleration,
+    /// Acceleration of a turn in place in a piece of a profile.
+    PieceAcceleration,
 }
 
 impl AngleField {
-    const ALL: [Self; 4] = [Self::Heading, Self::Sweep, Self::TurnSpeed, Self::TurnAcceleration];
+    const ALL: [Self; 5] =
+        [Self::Heading, Self::Sweep, Self::TurnSpeed, Self::TurnAcceleration, Self::PieceAcceleration];
 
     /// The keys for radians and for degrees.
     pub(super) const fn keys(self) -> [&'static str; 2] {
@@ -37,6 +40,7 @@ impl AngleField {
             Self::Sweep => ["sweep", "sweep_deg"],
             Self::TurnSpeed => ["turn_v_max", "turn_v_max_deg"],
             Self::TurnAcceleration => ["turn_a_max", "turn_a_max_deg"],
+            Self::PieceAcceleration => ["turn_accel", "turn_accel_deg"],
         }
     }
 
@@ -45,13 +49,15 @@ impl AngleField {
         match self {
             Self::Heading | Self::Sweep => "is more than one turn in radians",
             Self::TurnSpeed => "is more than one turn a second in radians",
-            Self::TurnAcceleration => "is more than one turn a second, each second, in radians",
+            Self::TurnAcceleration | Self::PieceAcceleration => {
+                "is more than one turn a second, each second, in radians"
+            }
         }
     }
 
     const fn range(self) -> NumberRange {
         match self {
-            Self::Heading | Self::Sweep => NumberRange::Any,
+            Self::Heading | Self::Sweep | Self::PieceAcceleration => NumberRange::Any,
             Self::TurnSpeed | Self::TurnAcceleration => NumberRange::Positive,
         }
     }
@@ -64,7 +70,7 @@ impl AngleField {
 
 /// The angles in radians that are above one turn, by field: the first one with its place, and how many there are.
 #[derive(Debug, Default)]
-pub(super) struct Doubts([Option<(String, f64, usize)>; 4]);
+pub(super) struct Doubts([Option<(String, f64, usize)>; 5]);
 
 impl Doubts {
     /// Reads an angle \[rad\], and notes it if it is given in radians and above one turn.
@@ -112,11 +118,13 @@ impl Scenario {
     /// Whether a file of it has to declare that its angles are in radians, because some of them would be doubted.
     pub(super) fn has_doubted_angles(&self) -> bool {
         self.agents.iter().any(|agent| {
-            let sweep = |segment: &PathSegment| match segment {
-                PathSegment::Line { .. } | PathSegment::Cusp => 0.0,
-                PathSegment::Arc { sweep, .. } => *sweep,
+            let pieces = match &agent.motion {
+                MotionSpec::Profile { pieces, .. } => &pieces[..],
+                MotionSpec::RestToRest { .. } => &[],
             };
-            agent.path.iter().map(sweep).chain([agent.start[2]]).any(|angle| angle.abs() > DOUBTED)
+            let turning = pieces.iter().filter(|piece| piece.in_place).map(|piece| piece.acceleration);
+            let sweeps = agent.path.iter().map(PathSegment::sweep);
+            sweeps.chain(turning).chain([agent.start[2]]).any(|angle| angle.abs() > DOUBTED)
         })
     }
 }

@@ -8,9 +8,9 @@ use super::json_fields::{
 };
 use super::labels;
 use super::outline::{loads, outline};
-use super::round_trip::RoundTripProfile;
-use super::turns;
-use super::{Agent, MotionSpec, PathSegment, Scenario, TURN};
+use super::round_trip::{RoundTripProfile, speed_after};
+use super::{Agent, MotionPiece, MotionSpec, PathSegment, Scenario};
+use super::{old_turns, turns};
 use crate::answer_files;
 use crate::byte_order_mark::unmarked;
 use crate::json::{self, JsonData, JsonNode, Position};
@@ -33,6 +33,8 @@ pub(super) const FORMAT: &str = "pcr-scenario";
 pub(super) const VERSION: u64 = 1;
 /// The version of files in which segments have gears.
 pub(super) const GEARS: u64 = 2;
+/// The version of files in which turns in place have no length.
+pub(super) const TURNS: u64 = 3;
 
 impl Scenario {
     /// The scenario in a JSON text; a byte order mark at its start is skipped.
@@ -117,17 +119,15 @@ impl Scenario {
     fn agents(json: &JsonNode<'_>, agents: AgentsVisitor) -> Result<Vec<Agent>, ScenarioError> {
         is_scenario(json)?;
         let fields = DecodeLocation::default().fields(json, &FIELDS)?;
-        match fields.get("version").map(|version| (version, &version.data)) {
-            Some((_, JsonData::Number(version))) if parse_integer(version) == Some(GEARS) => {}
-            None => agents.without_gears()?,
-            Some((_, JsonData::Number(version))) if parse_integer(version) == Some(VERSION) => {
-                agents.without_gears()?
-            }
-            Some((version, _)) => {
-                let known = format!("{VERSION} or {GEARS}, all that this pcr knows,");
-                return Err(fields.unexpected("version", version, &known));
-            }
-        }
+        let version = match fields.get("version").map(|version| (version, &version.data)) {
+            None => VERSION,
+            Some((given, JsonData::Number(version))) => match parse_integer(version) {
+                Some(version @ VERSION..=TURNS) => version,
+                _ => return Err(fields.unexpected("version", given, KNOWN_VERSIONS)),
+            },
+            Some((given, _)) => return Err(fields.unexpected("version", given, KNOWN_VERSIONS)),
+        };
+        agents.versions.check(version)?;
         match fields.get("name").map(|name| (name, &name.data)) {
             None => {}
             Some((given, JsonData::Text(name))) => {
@@ -170,6 +170,36 @@ fn is_scenario(json: &JsonNode<'_>) -> Result<(), ScenarioError> {
     }
 }
 
+/// The versions that are read, for messages.
+const KNOWN_VERSIONS: &str = "1, 2 or 3, all that this pcr knows,";
+
+/// What is not in files of all versions: the error of the first of each, as the version of a file may be behind its agents.
+#[derive(Default)]
+struct VersionFaults {
+    /// Of gears.
+    gear: Option<ScenarioError>,
+    /// Of turns without a length.
+    turn: Option<ScenarioError>,
+    /// Of turns with a length.
+    long_turn: Option<ScenarioError>,
+}
+
+impl VersionFaults {
+    /// Refuses what the version does not have. An agent before it may be refused for another reason.
+    fn check(&self, version: u64) -> Result<(), ScenarioError> {
+        let gear = self.gear.as_ref().filter(|_| version < GEARS);
+        let turn = self.turn.as_ref().filter(|_| version < TURNS);
+        let long_turn = self.long_turn.as_ref().filter(|_| version >= TURNS);
+        gear.or(turn).or(long_turn).map_or(Ok(()), |fault| Err(fault.clone()))
+    }
+
+    /// Notes that something is there from version 3 on.
+    fn needs_turns(&mut self, place: DecodeLocation<'_>, json: &JsonNode<'_>, field: &str) {
+        let problem = format!("it is there from version {TURNS} on; give \"version\": {TURNS}");
+        self.turn.get_or_insert_with(|| place.error(json.position, field, problem));
+    }
+}
+
 /// The agents of a file, one after the other as they are read.
 #[derive(Default)]
 struct AgentsVisitor {
@@ -181,17 +211,10 @@ struct AgentsVisitor {
     doubts: Doubts,
     /// The error of the first agent that is refused; later agents are not read.
     fault: Option<ScenarioError>,
-    /// The error of the first gear, in a file of a version that has none.
-    gear: Option<ScenarioError>,
+    versions: VersionFaults,
 }
 
 impl AgentsVisitor {
-    /// Refuses gears.
-    fn without_gears(&self) -> Result<(), ScenarioError> {
-        // An agent before it may be refused for another reason.
-        self.gear.clone().map_or(Ok(()), Err)
-    }
-
     fn add(&mut self, json: &JsonNode<'_>) {
         if self.fault.is_none()
             && let Err(fault) = self.decode(json)
@@ -201,7 +224,7 @@ impl AgentsVisitor {
     }
 
     fn decode(&mut self, json: &JsonNode<'_>) -> Result<(), ScenarioError> {
-        let (agent, text) = Agent::decode(json, self.all.len(), &mut self.doubts, &mut self.gear)?;
+        let (agent, text) = Agent::decode(json, self.all.len(), &mut self.doubts, &mut self.versions)?;
         let refused = |problem: &dyn fmt::Display| {
             let called = format!("agent {}", agent.display_name());
             let at = json.get("id").map_or(json.position, |id| id.position);
@@ -227,7 +250,7 @@ impl Agent {
         json: &JsonNode<'_>,
         index: usize,
         doubts: &mut Doubts,
-        gear: &mut Option<ScenarioError>,
+        versions: &mut VersionFaults,
     ) -> Result<(Self, bool), ScenarioError> {
         const KNOWN: [&str; 16] = [
             "id",
@@ -261,8 +284,8 @@ impl Agent {
             start.number("y", NumberRange::Any)?,
             doubts.angle(&start, AngleField::Heading)?,
         ];
-        let path = path(&fields, place, doubts, gear)?;
-        let motion = motion(&fields, &path, doubts)?;
+        let mut path = path(&fields, place, doubts, versions)?;
+        let motion = motion(&fields, &mut path, doubts, versions)?;
         let loads = loads(&fields, path.len())?;
         if !loads.is_empty() && path.contains(&PathSegment::Cusp) {
             return Err(fields.refused("loads", "there are none yet on a path with reverse gear"));
@@ -305,20 +328,30 @@ fn path(
     fields: &ObjectFields<'_>,
     place: DecodeLocation<'_>,
     doubts: &mut Doubts,
-    gear: &mut Option<ScenarioError>,
+    versions: &mut VersionFaults,
 ) -> Result<Vec<PathSegment>, ScenarioError> {
     let given = fields.array("path")?;
     let mut path = Vec::with_capacity(given.len());
     let mut reverse = false;
+    // An arc that stands for a turn was one for which the vehicle stops only where the motion says so.
+    let stops = fields.get("profile").is_some() || given.iter().any(|segment| kind(segment) == Some("turn"));
     for (index, json) in given.iter().enumerate() {
         let place = place.part("segment", index);
         let (segment, own) = PathSegment::decode(json, place, doubts)?;
         if let Some((at, _)) = own {
             let problem = format!("there are gears from version {GEARS} on; give \"version\": {GEARS}");
-            gear.get_or_insert_with(|| place.error(at, "gear", problem));
+            versions.gear.get_or_insert_with(|| place.error(at, "gear", problem));
+        }
+        let segment = match segment {
+            PathSegment::Arc { radius: old_turns::RADIUS, sweep } if stops => PathSegment::Turn { sweep },
+            PathSegment::Arc { radius: old_turns::RADIUS, sweep } => PathSegment::Kink { sweep },
+            other => other,
+        };
+        if kind(json) == Some("kink") {
+            versions.needs_turns(place, json, "kind");
         }
         // A turn in place has no gear.
-        let is_turn = matches!(segment, PathSegment::Arc { radius: TURN, .. });
+        let is_turn = matches!(segment, PathSegment::Turn { .. } | PathSegment::Kink { .. });
         let next = if is_turn { reverse } else { own.is_some_and(|(_, reverse)| reverse) };
         if next != reverse {
             path.push(PathSegment::Cusp);
@@ -338,26 +371,41 @@ fn path(
     Err(fields.refused("path", problem))
 }
 
+/// What a segment in a file is said to be.
+fn kind<'j>(segment: &'j JsonNode<'_>) -> Option<&'j str> {
+    let JsonData::Object(members) = &segment.data else { return None };
+    match members.iter().find(|(key, _)| key == "kind").map(|(_, kind)| &kind.data) {
+        Some(JsonData::Text(kind)) => Some(kind),
+        _ => None,
+    }
+}
+
 /// The profile that is given, or from rest to rest, or with turns in place.
-fn motion(fields: &ObjectFields<'_>, path: &[PathSegment], doubts: &mut Doubts) -> Result<MotionSpec, ScenarioError> {
+fn motion(
+    fields: &ObjectFields<'_>,
+    path: &mut [PathSegment],
+    doubts: &mut Doubts,
+    versions: &mut VersionFaults,
+) -> Result<MotionSpec, ScenarioError> {
     let moves = fields.get("profile").is_none();
     let limit = |field| match fields.get(field) {
         None if !moves => Ok(None),
         _ => fields.number(field, NumberRange::Positive).map(Some),
     };
-    let turns = moves && fields.array("path")?.iter().any(turns::is_given);
+    let turns = moves && path.iter().any(|segment| matches!(segment, PathSegment::Turn { .. }));
     let mut of_turns = |limit: AngleField| match limit.is_in(fields) || turns {
         false => Ok(0.0),
         true => doubts.angle(fields, limit),
     };
     let of_turns = [of_turns(AngleField::TurnSpeed)?, of_turns(AngleField::TurnAcceleration)?];
+    let profile = |pieces| MotionSpec::Profile { v0: 0.0, pieces };
     Ok(match (limit("v_max")?, limit("a_max")?) {
         (Some(v_max), Some(a_max)) if moves && path.contains(&PathSegment::Cusp) => {
-            gear::motion(path, [v_max, a_max], of_turns)
+            profile(gear::pieces(path, [v_max, a_max], of_turns))
         }
-        (Some(v_max), Some(a_max)) if turns => turns::motion(path, [v_max, a_max], of_turns),
+        (Some(v_max), Some(a_max)) if turns => profile(turns::pieces(path, [v_max, a_max], of_turns)),
         (Some(v_max), Some(a_max)) if moves => MotionSpec::RestToRest { v_max, a_max },
-        _ => MotionSpec::decode(fields, path.iter().map(PathSegment::length).sum())?,
+        _ => MotionSpec::decode(fields, path, doubts, versions)?,
     })
 }
 
@@ -374,23 +422,20 @@ impl PathSegment {
             Some((gear, JsonData::Text(name))) if name == "forward" => Ok(Some((gear.position, false))),
             Some((gear, _)) => Err(fields.unexpected("gear", gear, "\"forward\" or \"reverse\"")),
         };
-        let kind = match &json.data {
-            JsonData::Object(members) => members.iter().find(|(key, _)| key == "kind").map(|(_, kind)| kind),
-            _ => None,
-        };
-        match kind.map(|kind| &kind.data) {
-            Some(JsonData::Text(kind)) if kind == "line" => {
+        match kind(json) {
+            Some("line") => {
                 let fields = place.fields(json, &["kind", "length", "gear"])?;
                 Ok((Self::Line { length: fields.number("length", NumberRange::NotNegative)? }, gear(&fields)?))
             }
-            Some(JsonData::Text(kind)) if kind == "arc" => {
+            Some("arc") => {
                 let fields = place.fields(json, &["kind", "radius", "sweep", "sweep_deg", "gear"])?;
                 let radius = fields.number("radius", NumberRange::Positive)?;
                 Ok((Self::Arc { radius, sweep: doubts.angle(&fields, AngleField::Sweep)? }, gear(&fields)?))
             }
-            Some(JsonData::Text(kind)) if kind == "turn" => {
+            Some(of_angle @ ("turn" | "kink")) => {
                 let fields = place.fields(json, &["kind", "sweep", "sweep_deg"])?;
-                Ok((Self::Arc { radius: TURN, sweep: doubts.angle(&fields, AngleField::Sweep)? }, None))
+                let sweep = doubts.angle(&fields, AngleField::Sweep)?;
+                Ok((if of_angle == "turn" { Self::Turn { sweep } } else { Self::Kink { sweep } }, None))
             }
             _ => {
                 let fields = place.fields(json, &["kind", "length", "radius", "sweep", "sweep_deg", "gear"])?;
@@ -398,35 +443,96 @@ impl PathSegment {
                 Err(fields.error(
                     kind.position,
                     "kind",
-                    format!("{}; allowed is \"line\", \"arc\" or \"turn\"", brief(kind)),
+                    format!("{}; allowed is \"line\", \"arc\", \"turn\" or \"kink\"", brief(kind)),
                 ))
             }
         }
     }
 }
 
+/// Pieces of a profile in a file, with the fields of each, unless they are converted.
+struct GivenPieces<'j> {
+    /// The profile.
+    fields: ObjectFields<'j>,
+    pieces: Vec<(MotionPiece, Option<ObjectFields<'j>>)>,
+}
+
 impl MotionSpec {
-    /// The profile of an agent, scaled onto the length of its path.
-    fn decode(agent: &ObjectFields<'_>, length: f64) -> Result<Self, ScenarioError> {
+    /// The profile of an agent, scaled onto the length of its path and onto its turns in place.
+    fn decode(
+        agent: &ObjectFields<'_>,
+        path: &mut [PathSegment],
+        doubts: &mut Doubts,
+        versions: &mut VersionFaults,
+    ) -> Result<Self, ScenarioError> {
         let fields = agent.object("profile", "profile.", &["v0", "pieces"])?;
-        let v0 = fields.number("v0", NumberRange::NotNegative)?;
-        let (mut given, mut pieces) = (Vec::new(), Vec::new());
+        let mut v0 = fields.number("v0", NumberRange::NotNegative)?;
+        let mut pieces = Vec::new();
         for (index, json) in fields.array("pieces")?.iter().enumerate() {
             let place = agent.location.part("profile piece", index);
-            let fields = place.fields(json, &["duration", "accel"])?;
+            let fields = place.fields(json, &["duration", "accel", "turn_accel", "turn_accel_deg"])?;
             let duration = fields.number("duration", NumberRange::NotNegative)?;
-            let accel = fields.number("accel", NumberRange::Any)?;
-            given.push((duration, accel));
-            pieces.push(fields);
+            let in_place = AngleField::PieceAcceleration.is_in(&fields);
+            let acceleration = if in_place {
+                versions.needs_turns(place, json, "turn_accel");
+                if fields.get("accel").is_some() {
+                    return Err(fields.refused("accel", "given beside turn_accel; a piece has one of the two"));
+                }
+                doubts.angle(&fields, AngleField::PieceAcceleration)?
+            } else {
+                fields.number("accel", NumberRange::Any)?
+            };
+            pieces.push((MotionPiece { duration, acceleration, in_place }, Some(fields)));
         }
-        let mut profile = RoundTripProfile::new(v0, given).map_err(|(index, after, accel)| {
+        let mut given = GivenPieces { fields, pieces };
+        let has_turns = path.iter().any(PathSegment::takes_turning);
+        if has_turns && given.pieces.iter().all(|(piece, _)| !piece.in_place) {
             let problem =
-                format!("{} brings the speed to {} m/s; allowed is 0 and above", figure(accel), figure(after));
-            match pieces.get(index) {
-                Some(fields) => fields.refused("accel", problem),
-                None => agent.error(fields.position, "profile", problem),
+                format!("no turn_accel, although the path turns in place; from version {TURNS} on there is one");
+            versions.long_turn.get_or_insert_with(|| agent.refused("profile", problem));
+            // Scaled onto what was the length of the path.
+            let length = path.iter().map(old_turns::length).sum();
+            let profile = given.along_path(agent, v0, length)?;
+            v0 = profile.v0;
+            let converted = old_turns::converted(path, v0, &profile.pieces);
+            given.pieces = converted.into_iter().map(|piece| (piece, None)).collect();
+        }
+        let profile = given.along_path(agent, v0, path.iter().map(PathSegment::length).sum())?;
+        let mut along = profile.pieces.into_iter();
+        let mut pieces: Vec<MotionPiece> = given.pieces.iter().map(|(piece, _)| *piece).collect();
+        for piece in pieces.iter_mut().filter(|piece| !piece.in_place) {
+            if let Some((duration, acceleration)) = along.next() {
+                *piece = MotionPiece::drive(duration, acceleration);
             }
-        })?;
+        }
+        if has_turns || pieces.iter().any(|piece| piece.in_place) {
+            given.turn(agent, profile.v0, &mut pieces, path)?;
+        }
+        Ok(Self::Profile { v0: profile.v0, pieces })
+    }
+}
+
+impl GivenPieces<'_> {
+    /// The pieces at these places, from a speed, as they are after they have been written and read.
+    fn profile(&self, agent: &ObjectFields<'_>, v0: f64, places: &[usize]) -> Result<RoundTripProfile, ScenarioError> {
+        let of = |place: &usize| self.pieces.get(*place).map(|(piece, _)| (piece.duration, piece.acceleration));
+        RoundTripProfile::new(v0, places.iter().filter_map(of).collect()).map_err(|(index, after, accel)| {
+            let place = places.get(index).and_then(|place| self.pieces.get(*place));
+            let in_place = place.is_some_and(|(piece, _)| piece.in_place);
+            let (field, unit) = if in_place { ("turn_accel", "rad/s") } else { ("accel", "m/s") };
+            let problem =
+                format!("{} brings the speed to {} {unit}; allowed is 0 and above", figure(accel), figure(after));
+            match place {
+                Some((_, Some(fields))) => fields.refused(field, problem),
+                _ => agent.error(self.fields.position, "profile", problem),
+            }
+        })
+    }
+
+    /// The pieces along the path, scaled onto its length \[m\].
+    fn along_path(&self, agent: &ObjectFields<'_>, v0: f64, length: f64) -> Result<RoundTripProfile, ScenarioError> {
+        let places: Vec<usize> = (0..self.pieces.len()).filter(|place| !self.pieces[*place].0.in_place).collect();
+        let mut profile = self.profile(agent, v0, &places)?;
         let travelled = profile.travelled;
         if profile.fastest > LIMIT || (travelled - length).abs() > LENGTH_TOLERANCE * length {
             let problem = if profile.fastest > LIMIT {
@@ -438,14 +544,81 @@ impl MotionSpec {
                     figure(length)
                 )
             };
-            return Err(agent.error(fields.position, "profile", problem));
+            return Err(agent.error(self.fields.position, "profile", problem));
         }
-        // A difference that is rounding is kept, so that a written profile is read unchanged.
-        if travelled > 0.0 && (travelled - length).abs() > profile.rounding {
-            let scale = length / travelled;
-            let pieces = profile.pieces.iter().map(|&(duration, accel)| (duration, accel * scale)).collect();
-            profile = RoundTripProfile::new(profile.v0 * scale, pieces).unwrap_or(profile);
+        profile.scale_onto(length);
+        Ok(profile)
+    }
+
+    /// Scales what turns in place onto the turns of the path. `pieces` are all, and those along the path are final.
+    fn turn(
+        &self,
+        agent: &ObjectFields<'_>,
+        v0: f64,
+        pieces: &mut [MotionPiece],
+        path: &[PathSegment],
+    ) -> Result<(), ScenarioError> {
+        let refused = |problem: String| agent.error(self.fields.position, "profile", problem);
+        let length: f64 = path.iter().map(PathSegment::length).sum();
+        let mut before = 0.0;
+        // Number in the file, length of the path before it, and angle.
+        let mut turns = path.iter().enumerate().filter_map(|(segment, shape)| {
+            before += shape.length();
+            let file = segment - path.iter().take(segment).filter(|other| **other == PathSegment::Cusp).count();
+            shape.takes_turning().then(|| (file + 1, before, shape.sweep().abs()))
+        });
+        let (mut speed, mut fastest, mut travelled, mut rotation) = (v0, v0, 0.0, 0.0);
+        let mut place = 0;
+        while let Some(piece) = pieces.get(place).copied() {
+            if !piece.in_place {
+                let after = speed_after(speed + piece.acceleration * piece.duration, fastest);
+                travelled += 0.5 * (speed + after) * piece.duration;
+                (speed, fastest, place) = (after, fastest.max(after), place + 1);
+                continue;
+            }
+            let Some((segment, at, sweep)) = turns.next() else {
+                return Err(refused(format!("piece {} turns in place; there is no turn left on the path", place + 1)));
+            };
+            if speed != 0.0 || (travelled - at).abs() > LENGTH_TOLERANCE * length {
+                return Err(refused(format!(
+                    "piece {} turns in place at {} m and {} m/s; segment {segment} turns at {} m, where the agent has to stand",
+                    place + 1,
+                    figure(travelled),
+                    figure(speed),
+                    figure(at)
+                )));
+            }
+            // The pieces of this turn, between which it may wait.
+            let phases = turns::phases(pieces.get(place..).unwrap_or_default(), sweep, rotation);
+            let now = phases.last().map_or(rotation, |last| last.after);
+            let own = place..place + phases.len();
+            place = own.end;
+            let own: Vec<usize> = own.filter(|place| pieces.get(*place).is_some_and(|piece| piece.in_place)).collect();
+            let mut profile = self.profile(agent, rotation, &own)?;
+            if (profile.travelled - sweep).abs() > LENGTH_TOLERANCE * sweep || profile.fastest > LIMIT {
+                return Err(refused(format!(
+                    "turns by {} rad in place where segment {segment} turns by {} rad; allowed is a relative difference of \
+                     {LENGTH_TOLERANCE:.2e}",
+                    figure(profile.travelled),
+                    figure(sweep)
+                )));
+            }
+            if rotation == 0.0 {
+                profile.scale_onto(sweep);
+            }
+            // As a path, a turn may end under way where the profile ends.
+            if now != 0.0 && pieces.get(place).is_some_and(|next| !next.in_place) {
+                return Err(refused(format!("still turns with {} rad/s at the end of segment {segment}", figure(now))));
+            }
+            rotation = now;
+            for (place, (duration, acceleration)) in own.into_iter().zip(profile.pieces) {
+                if let Some(piece) = pieces.get_mut(place) {
+                    *piece = MotionPiece::turn(duration, acceleration);
+                }
+            }
         }
-        Ok(Self::Profile { v0: profile.v0, pieces: profile.pieces })
+        turns.next().map_or(Ok(()), |(segment, ..)| {
+            Err(refused(format!("does not turn in place on segment {segment}; its pieces of a turn have turn_accel")))
+        })
     }
 }

@@ -1,9 +1,9 @@
 //! Encodes a scenario as a file.
 
 use super::angles::{RADIANS, UNIT};
-use super::decode::{FORMAT, GEARS, VERSION};
+use super::decode::{FORMAT, GEARS, TURNS, VERSION};
 use super::gear::GearShifts;
-use super::{Agent, LoadOutline, MotionSpec, PathSegment, Scenario, TURN};
+use super::{Agent, LoadOutline, MotionPiece, MotionSpec, PathSegment, Scenario};
 use crate::footprint::Footprint;
 use serde_json::Value;
 use std::fmt::{self, Display};
@@ -20,7 +20,7 @@ impl Scenario {
         };
         let name = Value::from(self.name.as_str());
         let unit = if self.has_doubted_angles() { format!("  \"{UNIT}\": \"{RADIANS}\",\n") } else { String::new() };
-        let version = if self.agents.iter().any(Agent::changes_gear) { GEARS } else { VERSION };
+        let version = self.agents.iter().map(Agent::version).max().unwrap_or(VERSION);
         format!(
             "{{ \"format\": \"{FORMAT}\", \"version\": {version}, \"name\": {name},\n{unit}{warnings}  \"agents\": {agents} }}\n"
         )
@@ -30,6 +30,20 @@ impl Scenario {
     pub fn missing(name: &str, why: &str) -> String {
         let [name, why] = [name, why].map(Value::from);
         format!("{{\"format\":\"{FORMAT}\",\"version\":{VERSION},\"name\":{name},\"error\":{why}}}\n")
+    }
+}
+
+impl Agent {
+    /// The version of files that can have it.
+    fn version(&self) -> u64 {
+        let has_kinks = self.path.iter().any(|segment| matches!(segment, PathSegment::Kink { .. }));
+        if has_kinks || self.motion.turns_in_place() {
+            TURNS
+        } else if self.changes_gear() {
+            GEARS
+        } else {
+            VERSION
+        }
     }
 }
 
@@ -65,9 +79,8 @@ impl Display for AsJson<&Agent> {
                 PathSegment::Line { length } => {
                     write!(f, "{comma} {{ \"kind\": \"line\", \"length\": {length:?}{gear} }}")?;
                 }
-                PathSegment::Arc { radius: TURN, sweep } if matches!(motion, MotionSpec::Profile { .. }) => {
-                    write!(f, "{comma} {{ \"kind\": \"turn\", \"sweep\": {sweep:?} }}")?;
-                }
+                PathSegment::Turn { sweep } => write!(f, "{comma} {{ \"kind\": \"turn\", \"sweep\": {sweep:?} }}")?,
+                PathSegment::Kink { sweep } => write!(f, "{comma} {{ \"kind\": \"kink\", \"sweep\": {sweep:?} }}")?,
                 PathSegment::Arc { radius, sweep } => {
                     write!(f, "{comma} {{ \"kind\": \"arc\", \"radius\": {radius:?}, \"sweep\": {sweep:?}{gear} }}")?;
                 }
@@ -78,9 +91,9 @@ impl Display for AsJson<&Agent> {
             MotionSpec::RestToRest { v_max, a_max } => write!(f, "\"v_max\": {v_max:?}, \"a_max\": {a_max:?} }}"),
             MotionSpec::Profile { v0, pieces } => {
                 write!(f, "\"profile\": {{ \"v0\": {v0:?}, \"pieces\": [")?;
-                for (k, (duration, accel)) in pieces.iter().enumerate() {
-                    let comma = if k > 0 { "," } else { "" };
-                    write!(f, "{comma} {{ \"duration\": {duration:?}, \"accel\": {accel:?} }}")?;
+                for (k, MotionPiece { duration, acceleration, in_place }) in pieces.iter().enumerate() {
+                    let (comma, turn) = (if k > 0 { "," } else { "" }, if *in_place { "turn_" } else { "" });
+                    write!(f, "{comma} {{ \"duration\": {duration:?}, \"{turn}accel\": {acceleration:?} }}")?;
                 }
                 f.write_str(if pieces.is_empty() { "] } }" } else { " ] } }" })
             }
@@ -120,17 +133,13 @@ mod tests {
             margin: 0.1,
             t_start: -1e9,
             start: [1e-300, -7.0, 0.1 + 0.2],
-            path: vec![PathSegment::Line { length: 0.5 }, PathSegment::Arc { radius: 1e-9, sweep: -1e-9 }],
+            path: vec![PathSegment::Line { length: 0.5 }, PathSegment::Arc { radius: 1e-8, sweep: -1e-8 }],
             motion: MotionSpec::RestToRest { v_max: 1e10, a_max: 0.1 },
         };
         let length = agent.length();
         let stands =
             Agent { id: 0, label: String::new(), margin: 0.0, path: Vec::new(), loads: Vec::new(), ..agent.clone() };
-        let moves = Agent {
-            id: 1,
-            motion: MotionSpec::Profile { v0: length / 2.0, pieces: vec![(2.0, 0.0)] },
-            ..agent.clone()
-        };
+        let moves = Agent { id: 1, motion: MotionSpec::profile(length / 2.0, [(2.0, 0.0)]), ..agent.clone() };
         let outline = Footprint::new(vec![[0.1 + 0.2, -1.0], [1.0, 1.0 / 3.0], [-1.0, 0.5]]).unwrap().inflated(0.01);
         let outlined =
             Agent { id: 2, radius: outline.circumscribed_radius(), footprint: Some(outline), ..stands.clone() };

@@ -1,6 +1,6 @@
 //! Reverse gear: in files a property of segments, in paths a change of gear between them.
 
-use super::{Agent, MotionSpec, PathSegment, turns};
+use super::{Agent, MotionPiece, PathSegment, turns};
 
 /// A path in which the gear may change.
 pub(super) trait GearShifts {
@@ -53,12 +53,9 @@ impl Agent {
 
 /// From rest to rest between all changes of gear and turns in place, in the least time under limits of speed and acceleration, of turns as
 /// well.
-pub(super) fn motion(path: &[PathSegment], limits: [f64; 2], turn_limits: [f64; 2]) -> MotionSpec {
-    let pieces = path.split(|segment| *segment == PathSegment::Cusp).flat_map(|run| {
-        let length = run.iter().map(PathSegment::length).sum();
-        turns::motion(run, limits, turn_limits).pieces(length).1
-    });
-    MotionSpec::Profile { v0: 0.0, pieces: pieces.collect() }
+pub(super) fn pieces(path: &[PathSegment], limits: [f64; 2], turn_limits: [f64; 2]) -> Vec<MotionPiece> {
+    let runs = path.split(|segment| *segment == PathSegment::Cusp);
+    runs.flat_map(|run| turns::pieces(run, limits, turn_limits)).collect()
 }
 
 #[cfg(test)]
@@ -94,14 +91,14 @@ mod tests {
         let turns = [("turn_v_max", json!(1.0)), ("turn_a_max", json!(1.0))];
         let scenario = Scenario::from_json(&file(2, &path, &turns)).unwrap();
         let agent = &scenario.agents[0];
-        assert_eq!(agent.structure(), "CSCSSCSAS");
+        assert_eq!(agent.structure(), "CSCSSCSTS");
         assert_eq!([1, 3, 4, 6, 8].map(|place| agent.file_segment(place)), [0, 1, 2, 3, 5]);
         // 1 m, 6 m, 1 m, a turn by 1 rad, 3 m, each from rest to rest.
         let durations = [2.0, 7.0, 2.0, 2.0, 4.0];
         assert!((agent.duration() - durations.iter().sum::<f64>()).abs() < 1e-9, "{}", agent.duration());
         assert_eq!(agent.speed_at_cusp(), None);
         assert_eq!(Scenario::from_json(&scenario.to_json()), Ok(scenario.clone()));
-        assert!(scenario.to_json().contains("\"version\": 2"));
+        assert!(scenario.to_json().contains("\"version\": 3"));
         // Files without gears are those of version 1.
         let plain = Scenario::from_json(&file(2, &json!([line(2.0, Some("forward"))]), &[])).unwrap();
         assert!(plain.to_json().contains("\"version\": 1") && !plain.to_json().contains("gear"));
@@ -120,7 +117,7 @@ mod tests {
             let refused = refused(&file.to_string());
             assert!(refused.contains("agent 7, segment 1, gear: there are gears from version 2 on"), "{refused}");
         }
-        assert!(refused(&file(3, &back, &[])).contains("1 or 2, all that this pcr knows,"));
+        assert!(refused(&file(4, &back, &[])).contains("1, 2 or 3, all that this pcr knows,"));
         let neutral = refused(&file(2, &json!([line(1.0, Some("neutral"))]), &[]));
         assert!(neutral.contains("gear: \"neutral\" where \"forward\" or \"reverse\" is expected"), "{neutral}");
         let turn = refused(&file(2, &json!([{ "kind": "turn", "sweep": 1.0, "gear": "reverse" }]), &[]));

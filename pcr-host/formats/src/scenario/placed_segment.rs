@@ -2,14 +2,10 @@
 
 use super::PathSegment;
 
-/// Radius of the arc that stands for a turn in place \[m\]: far below what matters, far above the rounding of
-/// coordinates.
-pub const TURN: f64 = 1e-9;
-
 /// Largest angle between two pieces that is passed without stopping \[rad\]: what joints of maps are off by.
 pub const KINK: f64 = 0.01;
 
-/// A line or an arc where the file has it.
+/// A segment where the file has it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PlacedSegment {
     /// Start \[m\].
@@ -32,7 +28,7 @@ impl PlacedSegment {
         match self.shape {
             PathSegment::Line { .. } => self.heading,
             PathSegment::Cusp => self.heading + std::f64::consts::PI,
-            PathSegment::Arc { sweep, .. } => self.heading + sweep,
+            shape => self.heading + shape.sweep(),
         }
     }
 
@@ -40,7 +36,7 @@ impl PlacedSegment {
     pub fn end(&self) -> [f64; 2] {
         let (chord, direction) = match self.shape {
             PathSegment::Line { length } => (length, self.heading),
-            PathSegment::Cusp => (0.0, self.heading),
+            PathSegment::Turn { .. } | PathSegment::Kink { .. } | PathSegment::Cusp => return self.start,
             PathSegment::Arc { radius, sweep } => {
                 (2.0 * radius * (sweep.abs() / 2.0).sin(), self.heading + sweep / 2.0)
             }
@@ -48,16 +44,19 @@ impl PlacedSegment {
         [self.start[0] + chord * direction.cos(), self.start[1] + chord * direction.sin()]
     }
 
-    /// The part between two lengths along it \[m\].
+    /// The part between two lengths along it \[m\]. Turns and kinks are not cut.
     #[must_use]
     pub fn part(&self, from: f64, to: f64) -> Self {
+        if matches!(self.shape, PathSegment::Turn { .. } | PathSegment::Kink { .. }) {
+            return *self;
+        }
         let whole = self.shape.length();
         let cut = |length: f64| {
             let share = if whole > 0.0 { length / whole } else { 0.0 };
             match self.shape {
                 PathSegment::Line { length } => PathSegment::Line { length: length * share },
                 PathSegment::Arc { radius, sweep } => PathSegment::Arc { radius, sweep: sweep * share },
-                PathSegment::Cusp => PathSegment::Line { length: 0.0 },
+                _ => PathSegment::Line { length: 0.0 },
             }
         };
         let before = Self { shape: cut(from), ..*self };
@@ -67,8 +66,8 @@ impl PlacedSegment {
     /// Radius \[m\], if it is an arc.
     pub(crate) fn radius(&self) -> Option<f64> {
         match self.shape {
-            PathSegment::Line { .. } | PathSegment::Cusp => None,
             PathSegment::Arc { radius, .. } => Some(radius),
+            _ => None,
         }
     }
 
@@ -77,6 +76,8 @@ impl PlacedSegment {
         let shape = match self.shape {
             PathSegment::Line { .. } | PathSegment::Cusp => self.shape,
             PathSegment::Arc { radius, sweep } => PathSegment::Arc { radius, sweep: -sweep },
+            PathSegment::Turn { sweep } => PathSegment::Turn { sweep: -sweep },
+            PathSegment::Kink { sweep } => PathSegment::Kink { sweep: -sweep },
         };
         Self { start: self.end(), heading: self.heading_at_end() + std::f64::consts::PI, shape }
     }

@@ -42,6 +42,17 @@ impl RoundTripProfile {
         }
         Ok(Self { v0, pieces, fastest, travelled, rounding })
     }
+
+    /// Scales it onto a way. A difference that is rounding is kept, so that a written profile is read unchanged.
+    pub(super) fn scale_onto(&mut self, way: f64) {
+        if self.travelled > 0.0 && (self.travelled - way).abs() > self.rounding {
+            let scale = way / self.travelled;
+            let pieces = self.pieces.iter().map(|&(duration, accel)| (duration, accel * scale)).collect();
+            if let Ok(scaled) = Self::new(self.v0 * scale, pieces) {
+                *self = scaled;
+            }
+        }
+    }
 }
 
 /// The speed after a piece of a profile: what rounding leaves of a stop is no speed.

@@ -112,7 +112,7 @@ fn values_of_the_wrong_type_are_quoted() {
     refused(&with("/path/0", &json!(2.0)), "agent 7, segment 1: 2.0 where an object is expected");
     refused(
         &with("/path/0/kind", &json!("spline")),
-        "agent 7, segment 1, kind: \"spline\"; allowed is \"line\", \"arc\" or \"turn\"",
+        "agent 7, segment 1, kind: \"spline\"; allowed is \"line\", \"arc\", \"turn\" or \"kink\"",
     );
     refused(&json!({ "agents": [agent(1), 5] }), "agent at place 2: 5 where an object is expected");
     refused(&json!({ "agents": 5 }), "agents: 5 where an array is expected");
@@ -416,8 +416,8 @@ fn files_may_say_what_they_are() {
     assert_eq!(message, "format: \"other\" where \"pcr-scenario\" is expected");
     let message = file("pcr-locks", 1).unwrap_err().to_string();
     assert_eq!(message, "this is pcr-locks, an answer of pcr; a scenario is expected");
-    let message = file("pcr-scenario", 3).unwrap_err().to_string();
-    assert_eq!(message, "version: 3 where 1 or 2, all that this pcr knows, is expected");
+    let message = file("pcr-scenario", 4).unwrap_err().to_string();
+    assert_eq!(message, "version: 4 where 1, 2 or 3, all that this pcr knows, is expected");
 }
 
 #[test]
@@ -438,14 +438,6 @@ fn a_full_turn_may_be_rounded_and_no_more() {
 #[test]
 fn a_path_without_length_takes_no_time() {
     assert_eq!(MotionSpec::RestToRest { v_max: 1.0, a_max: 0.5 }.pieces(0.0), (0.0, Vec::new()));
-}
-
-#[test]
-fn headings_accumulate_along_arcs() {
-    let scenario = Scenario::from_value(&json!({ "agents": [agent(3)] })).unwrap();
-    let at = |length| scenario.agents[0].heading_at(length);
-    // A line of 2 m, then 1.5 rad to the right with a radius of 1 m.
-    assert_eq!([at(0.0), at(2.0), at(2.5), at(3.5), at(9.0)], [0.0, 0.0, -0.5, -1.5, -1.5]);
 }
 
 #[test]
@@ -486,10 +478,100 @@ fn a_stretch_ends_with_its_wait_and_nothing_of_what_follows() {
         let MotionSpec::Profile { pieces, .. } = scenario.agents[0].stretch(first, last).agent.motion else {
             panic!("a profile")
         };
-        pieces.into_iter().map(|(duration, _)| duration).collect()
+        pieces.into_iter().map(|piece| piece.duration).collect()
     };
     assert_eq!(durations(0, 0), [1.0, 1.0, 5.0]);
     assert_eq!(durations(1, 1), [5.0, 1.0, 1.0]);
     assert_eq!(durations(0, 1), [1.0, 1.0, 5.0, 1.0, 1.0]);
     assert_eq!(scenario.agents[0].stretch(1, 1).agent.t_start, 2.0);
+}
+
+/// A path with a turn of 2 rad, a joint that is passed, and a turn of 1 rad: 2 m, 2 m and 1 m from rest to rest at 1 m/s², with accelerations of
+/// 0.5 rad/s² in place.
+fn turning(version: u64, turn: impl Fn(f64, f64) -> Value, kink: &Value) -> Value {
+    let line = |length: f64| json!({ "kind": "line", "length": length });
+    let piece = |duration: f64, accel: f64| json!({ "duration": duration, "accel": accel });
+    let path = [line(2.0), json!({ "kind": "turn", "sweep": 2.0 }), line(1.0), kink.clone(), line(1.0)];
+    let path = [&path[..], &[json!({ "kind": "turn", "sweep": -1.0 }), line(1.0)]].concat();
+    let drive = |length: f64| [piece(length.sqrt(), 1.0), piece(length.sqrt(), -1.0)];
+    let turn = |sweep: f64| [turn((2.0 * sweep).sqrt(), 0.5), turn((2.0 * sweep).sqrt(), -0.5)];
+    let wait = [piece(3.0, 0.0)];
+    let pieces = [&drive(2.0)[..], &wait, &turn(2.0), &wait, &drive(2.0), &turn(1.0), &drive(1.0)].concat();
+    let agent = json!({ "id": 1, "radius": 0.3, "start": { "x": 0, "y": 0, "heading": 0 }, "path": path,
+        "profile": { "v0": 0, "pieces": pieces } });
+    json!({ "version": version, "agents": [agent] })
+}
+
+#[test]
+fn turns_with_a_length_are_read_as_turns() {
+    let old = |duration: f64, accel: f64| json!({ "duration": duration, "accel": 1e-9 * accel });
+    let arc = json!({ "kind": "arc", "radius": 1e-9, "sweep": 0.005 });
+    let old = Scenario::from_value(&turning(1, old, &arc)).unwrap();
+    let new = |duration: f64, accel: f64| json!({ "duration": duration, "turn_accel": accel });
+    let new = Scenario::from_value(&turning(3, new, &json!({ "kind": "kink", "sweep": 0.005 }))).unwrap();
+    let [old, new] = [&old.agents[0], &new.agents[0]];
+    assert_eq!((new.structure().as_str(), &old.path), ("STSTSTS", &new.path));
+    assert_eq!([new.path[1], new.path[3]], [PathSegment::Turn { sweep: 2.0 }, PathSegment::Kink { sweep: 0.005 }]);
+    assert_eq!(old.length(), 5.0);
+    let [was, is] = [old.parts(), new.parts()];
+    for (was, is) in was.iter().zip(&is) {
+        let [before, after] = [was, is].map(|phases| {
+            let peak = phases.iter().flat_map(|phase| [phase.before, phase.after]).fold(0.0, f64::max);
+            (phases.iter().map(|phase| phase.duration).sum::<f64>(), peak)
+        });
+        assert!((before.0 - after.0).abs() < 1e-6 && (before.1 - after.1).abs() < 1e-6, "{was:?} {is:?}");
+    }
+    // It waits before it turns, and after it before it drives on.
+    let waits = |place: usize| is[place].first().is_some_and(|phase| phase.duration == 3.0 && !phase.moves());
+    assert_eq!([0, 1, 2, 5].map(waits), [false, true, true, false]);
+    let turned: f64 = is[5].iter().map(|phase| 0.5 * (phase.before + phase.after) * phase.duration).sum();
+    assert!((turned - 1.0).abs() < 1e-12, "{turned}");
+    // Both are written as they are now.
+    for agent in [old, new] {
+        let scenario = Scenario::new("", vec![agent.clone()]);
+        assert!(scenario.to_json().contains("\"version\": 3"));
+        assert_eq!(Scenario::from_json(&scenario.to_json()), Ok(scenario));
+    }
+}
+
+#[test]
+fn turns_are_done_where_they_are_and_as_far() {
+    let new = |duration: f64, accel: f64| json!({ "duration": duration, "turn_accel": accel });
+    let kink = json!({ "kind": "kink", "sweep": 0.005 });
+    let file = turning(3, new, &kink);
+    let changed = |pointer: &str, value: Value| {
+        let mut file = file.clone();
+        *file.pointer_mut(pointer).unwrap() = value;
+        Scenario::from_value(&file).unwrap_err().to_string()
+    };
+    let angle = changed("/agents/0/path/1/sweep", json!(2.1));
+    assert!(angle.contains("profile: turns by 2 rad in place where segment 2 turns by 2.1 rad"), "{angle}");
+    let place = changed("/agents/0/path/0/length", json!(3.0));
+    assert!(place.contains("m on a path of 6 m"), "{place}");
+    let mut shifted = file.clone();
+    shifted["agents"][0]["path"].as_array_mut().unwrap().swap(0, 4);
+    shifted["agents"][0]["path"][0] = json!({ "kind": "line", "length": 1.0 });
+    shifted["agents"][0]["path"][4] = json!({ "kind": "line", "length": 2.0 });
+    let place = Scenario::from_value(&shifted).unwrap_err().to_string();
+    assert!(place.contains("piece 4 turns in place at 2"), "{place}");
+    let mut fewer = file.clone();
+    fewer["agents"][0]["path"].as_array_mut().unwrap().remove(5);
+    let none = Scenario::from_value(&fewer).unwrap_err().to_string();
+    assert!(none.contains("piece 9 turns in place; there is no turn left on the path"), "{none}");
+    let mut more = file.clone();
+    more["agents"][0]["path"].as_array_mut().unwrap().push(json!({ "kind": "turn", "sweep": 1.0 }));
+    let more = Scenario::from_value(&more).unwrap_err().to_string();
+    assert!(more.contains("does not turn in place on segment 8"), "{more}");
+    let back = changed("/agents/0/profile/pieces/4/turn_accel", json!(-2.0));
+    assert!(back.contains("profile piece 5, turn_accel: -2 brings the speed to"), "{back}");
+    // Before version 3 there is neither, and from then on turns have no length.
+    for version in [1, 2] {
+        let mut old = file.clone();
+        old["version"] = json!(version);
+        let refused = Scenario::from_value(&old).unwrap_err().to_string();
+        assert!(refused.contains("it is there from version 3 on"), "{refused}");
+    }
+    let long = |duration: f64, accel: f64| json!({ "duration": duration, "accel": 1e-9 * accel });
+    let refused = Scenario::from_value(&turning(3, long, &kink)).unwrap_err().to_string();
+    assert!(refused.contains("no turn_accel, although the path turns in place"), "{refused}");
 }

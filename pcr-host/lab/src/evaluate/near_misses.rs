@@ -103,7 +103,7 @@ fn collides(method: &dyn CollisionMethod, field: &ComparisonFleet<'_>) -> Result
 }
 
 fn agent(id: usize, t_start: f64, start: [f64; 3], segment: PathSegment) -> Agent {
-    let motion = MotionSpec::Profile { v0: SPEED, pieces: vec![(segment.length() / SPEED, 0.0)] };
+    let motion = MotionSpec::profile(SPEED, [(segment.length() / SPEED, 0.0)]);
     Agent { t_start, ..Agent::disc(id as u64 + 1, RADII[id], start, vec![segment], motion) }
 }
 

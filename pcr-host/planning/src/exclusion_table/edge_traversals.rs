@@ -7,7 +7,7 @@
 
 use pcr_formats::import::{Facing, ImportedLayout, Layout, LayoutEdge, RouteStep, VehicleTraits, ride, turn};
 use pcr_formats::plane_geometry::{hull, wrapped};
-use pcr_formats::scenario::{Agent, KINK, MotionSpec, PathSegment, PlacedSegment, TURN};
+use pcr_formats::scenario::{Agent, KINK, MotionSpec, PathSegment, PlacedSegment};
 use std::collections::{HashMap, HashSet};
 use std::f64::consts::{FRAC_PI_2, PI, TAU};
 
@@ -30,15 +30,10 @@ pub struct EdgeTraversal {
 /// The meaning of lengths on the path of an agent, as lengths on the edge.
 #[derive(Clone, Copy, Debug)]
 pub(crate) enum LengthMapping {
-    /// Those on the edge, and of the turns within it, which add so much \[m\].
-    Along(f64),
-    /// The same from the other end of the edge.
-    Reversed {
-        /// Length of the path \[m\].
-        length: f64,
-        /// What the turns add to it \[m\].
-        turns: f64,
-    },
+    /// Those on the edge.
+    Along,
+    /// The same from the other end of the edge, which is so long \[m\].
+    Reversed(f64),
     /// The agent turns in place at this length \[m\].
     At(f64),
 }
@@ -48,7 +43,7 @@ impl EdgeTraversal {
     pub fn turns_at(&self) -> Option<f64> {
         match self.lengths {
             LengthMapping::At(length) => Some(length),
-            LengthMapping::Along(_) | LengthMapping::Reversed { .. } => None,
+            LengthMapping::Along | LengthMapping::Reversed(_) => None,
         }
     }
 
@@ -65,13 +60,9 @@ impl EdgeTraversal {
         let (starts, ends) = (from <= slack, to >= whole - slack);
         let inner = match self.lengths {
             LengthMapping::At(length) => return (starts && ends).then_some([length; 2]),
-            LengthMapping::Along(turns) => {
-                let edge = whole - turns;
-                [if starts { 0.0 } else { from + slack }, if ends { edge } else { to - turns - slack }]
-            }
-            LengthMapping::Reversed { length, turns } => {
-                let edge = length - turns;
-                [if ends { 0.0 } else { length - to + slack }, if starts { edge } else { edge - from - slack }]
+            LengthMapping::Along => [if starts { 0.0 } else { from + slack }, if ends { whole } else { to - slack }],
+            LengthMapping::Reversed(length) => {
+                [if ends { 0.0 } else { length - to + slack }, if starts { length } else { length - from - slack }]
             }
         };
         (inner[0] <= inner[1]).then_some(inner)
@@ -86,8 +77,8 @@ impl EdgeTraversal {
             LengthMapping::At(length) => {
                 return (from - slack <= length && length <= to + slack).then(|| self.agent.clone());
             }
-            LengthMapping::Along(turns) => [from, to + turns],
-            LengthMapping::Reversed { length, turns } => [length - to - turns, length - from],
+            LengthMapping::Along => [from, to],
+            LengthMapping::Reversed(length) => [length - to, length - from],
         };
         let [from, to] = [from - slack, to + slack];
         let (mut before, mut pieces) = (0.0, Vec::new());
@@ -95,23 +86,24 @@ impl EdgeTraversal {
             let length = piece.shape.length();
             let [lo, hi] = [(from - before).max(0.0), (to - before).min(length)];
             if lo <= hi {
-                pieces.push(if is_turn(&piece) { piece } else { piece.part(lo, hi) });
+                pieces.push(piece.part(lo, hi));
             }
             before += length;
         }
         let first = pieces.first()?;
         let start = [first.start[0], first.start[1], first.heading];
-        let path: Vec<PathSegment> = pieces.iter().map(|piece| piece.shape).filter(|it| it.length() > 0.0).collect();
+        let path = pieces.iter().map(|piece| piece.shape).filter(|it| it.length() > 0.0 || it.sweep() != 0.0);
+        let path: Vec<PathSegment> = path.collect();
         let length = path.iter().map(PathSegment::length).sum();
         // What it covers does not depend on its speed.
-        let motion = MotionSpec::Profile { v0: 1.0, pieces: vec![(length, 0.0)] };
+        let motion = MotionSpec::profile(1.0, [(length, 0.0)]);
         Some(Agent { start, path, motion, ..self.agent.clone() })
     }
 }
 
-/// Whether a piece is a turn in place.
+/// Whether a piece is a turn in place or a kink.
 pub fn is_turn(piece: &PlacedSegment) -> bool {
-    matches!(piece.shape, PathSegment::Arc { radius: TURN, .. })
+    matches!(piece.shape, PathSegment::Turn { .. } | PathSegment::Kink { .. })
 }
 
 /// Returns the path of an agent in the plane; where it stands, a line without a length.
@@ -130,11 +122,8 @@ impl LengthMapping {
     /// Lengths on the edge for lengths on the path of the agent, rounded outward.
     pub(crate) fn on_edge(self, lengths: [f64; 2]) -> [f64; 2] {
         match self {
-            Self::Along(turns) => [(lengths[0] - turns).max(0.0), lengths[1]],
-            Self::Reversed { length, turns } => {
-                let [lo, hi] = reversed(length, lengths);
-                [(lo - turns).max(0.0), hi]
-            }
+            Self::Along => lengths,
+            Self::Reversed(length) => reversed(length, lengths),
             Self::At(length) => [length; 2],
         }
     }
@@ -240,12 +229,7 @@ impl<'a> EdgeTraversals<'a> {
 
     fn along(&self, step: RouteStep<'_>) -> EdgeTraversal {
         let agent = self.along_with(self.facing(step), step);
-        let turns = agent.path.iter().filter(|shape| matches!(shape, PathSegment::Arc { radius: TURN, .. }));
-        let turns = turns.map(PathSegment::length).sum::<f64>() + 0.0;
-        let lengths = match step.backward {
-            true => LengthMapping::Reversed { length: agent.length(), turns },
-            false => LengthMapping::Along(turns),
-        };
+        let lengths = if step.backward { LengthMapping::Reversed(agent.length()) } else { LengthMapping::Along };
         EdgeTraversal { agent, lengths }
     }
 
@@ -405,24 +389,29 @@ pub fn swept(agent: &Agent, pieces: &[PlacedSegment]) -> Vec<SweptShape> {
     let parts: Vec<_> = footprint.parts().collect();
     let mut shapes = Vec::new();
     for piece in pieces {
-        let (steps, half) = match piece.shape {
-            PathSegment::Line { .. } | PathSegment::Cusp => (1.0, 0.0),
-            PathSegment::Arc { sweep, .. } => {
-                let steps = (sweep.abs() / STEP).ceil().max(1.0);
-                (steps, sweep / steps / 2.0)
-            }
-        };
+        let sweep = piece.shape.sweep();
+        let steps = (sweep.abs() / STEP).ceil().max(1.0);
+        let half = sweep / steps / 2.0;
         let length = piece.shape.length();
         let pose = |step: f64| {
+            if is_turn(piece) {
+                return (piece.start, piece.heading + sweep * (step / steps));
+            }
             let part = piece.part(0.0, length * (step / steps));
             (part.end(), part.heading_at_end())
+        };
+        // Of the centre about which it turns, if it does.
+        let radius = match piece.shape {
+            PathSegment::Arc { radius, .. } => Some(radius),
+            PathSegment::Turn { .. } | PathSegment::Kink { .. } => Some(0.0),
+            _ => None,
         };
         for step in 0..steps as usize {
             let ends = [pose(step as f64), pose((step + 1) as f64)];
             for part in &parts {
                 let corners = ends.iter().flat_map(|&(at, heading)| placed(part.polygon(), at, heading));
                 let mut corners: Vec<[f64; 2]> = corners.collect();
-                if let PathSegment::Arc { radius, sweep } = piece.shape {
+                if let Some(radius) = radius {
                     // The way of a corner lies in the triangle of its ends and the point in which its tangents meet.
                     let ([x, y], heading) = ends[0];
                     let to = heading + FRAC_PI_2.copysign(sweep);

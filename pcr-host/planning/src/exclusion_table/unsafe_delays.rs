@@ -310,12 +310,12 @@ impl UnsafeDelayModel {
 fn driven(agent: Agent, edge: &LayoutEdge, driving: EdgeDriving, speed: f64) -> Agent {
     let (length, whole) = (agent.length(), edge.length());
     let motion = match driving.acceleration {
-        None if length > 0.0 => MotionSpec::Profile { v0: speed, pieces: vec![(length / speed, 0.0)] },
+        None if length > 0.0 => MotionSpec::profile(speed, [(length / speed, 0.0)]),
         // A line too short to have a direction is replaced by a larger radius, but takes time all the same.
         acceleration if length == 0.0 && whole > 0.0 => {
             let ramps =
                 acceleration.map_or(0.0, |acceleration| (speed / acceleration).min((whole / acceleration).sqrt()));
-            MotionSpec::Profile { v0: 0.0, pieces: vec![((whole / speed).max(ramps) + ramps, 0.0)] }
+            MotionSpec::profile(0.0, [((whole / speed).max(ramps) + ramps, 0.0)])
         }
         _ => agent.motion,
     };

@@ -1,9 +1,9 @@
 //! How far a motion in a number format is from that in the scenario: the conversion loses digits.
 
-use super::{Fleet, FormatRangeError, HostScalar, turn_in_place};
+use super::{Fleet, FormatRangeError, HostScalar};
 use pcr_core::Motion;
 use pcr_formats::footprint::Footprint;
-use pcr_formats::scenario::{Agent, PathSegment, PlacedSegment, Scenario, TURN};
+use pcr_formats::scenario::{Agent, PathSegment, PlacedSegment, Scenario};
 use pcr_formats::warning::WarningCode;
 use std::f64::consts::{PI, TAU};
 
@@ -26,7 +26,7 @@ impl RoundingBounds {
         let Self { distance, length } = of_path::<S>(agent);
         // On an arc corners of an outline go farther than its reference point.
         let curvatures = agent.path.iter().map(|segment| match *segment {
-            PathSegment::Arc { radius, .. } if radius > TURN => 1.0 / radius,
+            PathSegment::Arc { radius, .. } => 1.0 / radius,
             _ => 0.0,
         });
         let lever = 1.0 + spread(agent) * curvatures.fold(0.0, f64::max);
@@ -86,22 +86,21 @@ fn of_path<S: HostScalar>(agent: &Agent) -> RoundingBounds {
         let turned = if turned > PI { TAU - turned } else { turned };
         let mut next = PlacedSegment { start: to, heading: rounded.heading_at_end(), shape: segment };
         let (length, mut bent) = (segment.length(), 0.0);
-        if let Some(sweep) = turn_in_place::<S>(&segment) {
-            next.heading += held_angle::<S>(sweep);
-            next.shape = PathSegment::Line { length: 0.0 };
-        } else {
-            let turns = segment.turns();
-            let kept = representable::<S>(length / turns) * turns;
-            next.shape = match segment {
-                PathSegment::Line { .. } | PathSegment::Cusp => PathSegment::Line { length: kept },
-                PathSegment::Arc { radius, sweep } => {
-                    let radius = representable::<S>(radius);
-                    let rounded = if radius > 0.0 { (kept / radius).copysign(sweep) } else { 0.0 };
-                    bent = (rounded - sweep).abs();
-                    PathSegment::Arc { radius, sweep: rounded }
-                }
-            };
-        }
+        let turns = segment.turns();
+        let kept = representable::<S>(length / turns) * turns;
+        next.shape = match segment {
+            PathSegment::Line { .. } => PathSegment::Line { length: kept },
+            PathSegment::Arc { radius, sweep } => {
+                let radius = representable::<S>(radius);
+                let rounded = if radius > 0.0 { (kept / radius).copysign(sweep) } else { 0.0 };
+                bent = (rounded - sweep).abs();
+                PathSegment::Arc { radius, sweep: rounded }
+            }
+            PathSegment::Turn { sweep } | PathSegment::Kink { sweep } => {
+                PathSegment::Kink { sweep: held_angle::<S>(sweep) }
+            }
+            PathSegment::Cusp => PathSegment::Kink { sweep: held_angle::<S>(PI) },
+        };
         let differs = next.shape.length() - length;
         longer += differs;
         rounding.length = rounding.length.max(longer.abs());

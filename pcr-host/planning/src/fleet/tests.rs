@@ -329,3 +329,18 @@ fn passing_orders_are_not_those_of_motions_with_another_lag() {
     motions[1] = motions[1].with_profile(longer.as_profile(), 0.0).expect("its path");
     assert_eq!(orders.row(&motions, 0).map(drop), Err(MismatchError::OtherFleet));
 }
+
+/// Where the gear changes the direction of travel turns by half a turn, in the format as in the file: it was told as if the path went on.
+#[test]
+fn gears_and_turns_are_not_rounded_away() {
+    let line = |length: f64, gear: &str| json!({ "kind": "line", "length": length, "gear": gear });
+    let turn = json!({ "kind": "turn", "sweep": 1.0 });
+    let path = [line(2.0, "forward"), line(1.0, "reverse"), turn, line(3.0, "reverse"), line(2.0, "forward")];
+    let limits = json!({ "turn_v_max": 1.0, "turn_a_max": 1.0, "path": path });
+    let mut agent = agent();
+    agent.as_object_mut().unwrap().extend(limits.as_object().unwrap().clone());
+    let scenario = Scenario::from_value(&json!({ "version": 2, "agents": [agent] })).unwrap();
+    assert_eq!(rounded::<f32>(&scenario), Ok(None));
+    assert_eq!(rounded::<Q20>(&scenario), Ok(None));
+    assert_eq!(rounded::<Q16>(&scenario), Ok(None));
+}

@@ -1,8 +1,8 @@
-//! Turns in place of outlines. The path of a scenario has no length for them, but an outline sweeps an area meanwhile, so each of
+//! Turns in place and kinks of outlines. The path of a scenario has no length for them, but an outline sweeps an area meanwhile, so each of
 //! them becomes a segment with a length.
 
 use super::HostScalar;
-use pcr_formats::scenario::{Agent, MotionSpec, PathSegment, SegmentPhase, TURN};
+use pcr_formats::scenario::{Agent, MotionSpec, PathSegment, SegmentPhase};
 
 /// Length for each radian where the agent comes to rest before and after a turn \[m\]: a speed of 1 m/s is one of 1 rad/s.
 const LEVER: f64 = 1.0;
@@ -22,14 +22,15 @@ pub(super) struct TurningMotion {
 /// The motion of an agent with turns in place; `None` if it has none.
 pub(super) fn turning<S: HostScalar>(agent: &Agent) -> Option<TurningMotion> {
     let sweep = |segment: &PathSegment| match *segment {
-        PathSegment::Arc { radius: TURN, sweep } if sweep != 0.0 => Some(sweep.abs()),
+        PathSegment::Turn { sweep } | PathSegment::Kink { sweep } if sweep != 0.0 => Some(sweep.abs()),
         _ => None,
     };
     agent.path.iter().find_map(sweep)?;
     let parts = agent.parts();
-    let phases = || parts.iter().flatten();
-    let top = phases().flat_map(|phase| [phase.before, phase.after]).fold(0.0, f64::max);
-    let mut speed = phases().next().map_or(0.0, |first| first.before);
+    let along = agent.path.iter().zip(&parts).filter(|(segment, _)| !segment.takes_turning());
+    let phases = along.flat_map(|(_, phases)| phases);
+    let top = phases.flat_map(|phase| [phase.before, phase.after]).fold(0.0, f64::max);
+    let (mut speed, _) = agent.motion.pieces(agent.length());
     let [x, y, _] = agent.start;
     let extent = x.abs().max(y.abs()) + agent.length() + agent.circumscribed_radius();
     // What the turn adds to the path, and the rounding of coordinates divided by the lever, are about the same.
@@ -47,22 +48,25 @@ pub(super) fn turning<S: HostScalar>(agent: &Agent) -> Option<TurningMotion> {
         let after = own.last().map_or(speed, |last| last.after);
         if sweep * agent.circumscribed_radius() <= 0.125 * slack {
             // It moves no point by more than rounding does.
+            let standing = SegmentPhase { duration, before: 0.0, after: 0.0 };
+            all.extend(if segment.takes_turning() { std::slice::from_ref(&standing) } else { own });
+            speed = if segment.takes_turning() { speed } else { after };
+        } else if segment.takes_turning() && own.iter().any(SegmentPhase::moves) {
+            *lever = LEVER;
+            all.extend(own.iter().map(|phase| SegmentPhase {
+                before: phase.before * LEVER,
+                after: phase.after * LEVER,
+                ..*phase
+            }));
+            speed = after;
         } else if speed == 0.0 && after == 0.0 {
             *lever = LEVER;
-            let turns = own.iter().any(|phase| phase.before > 0.0 || phase.after > 0.0);
-            let scaled = own.iter().map(|phase| SegmentPhase {
-                before: phase.before / TURN * LEVER,
-                after: phase.after / TURN * LEVER,
-                ..*phase
-            });
-            all.extend(scaled);
-            if !turns {
-                let half = 0.5 * SHORTEST.max(64.0 * S::STEP);
-                let peak = sweep * LEVER / half;
-                all.push(SegmentPhase { duration: half, before: 0.0, after: peak });
-                all.push(SegmentPhase { duration: half, before: peak, after: 0.0 });
-                late += 2.0 * half;
-            }
+            all.extend(own);
+            let half = 0.5 * SHORTEST.max(64.0 * S::STEP);
+            let peak = sweep * LEVER / half;
+            all.push(SegmentPhase { duration: half, before: 0.0, after: peak });
+            all.push(SegmentPhase { duration: half, before: peak, after: 0.0 });
+            late += 2.0 * half;
         } else {
             // Some digits long, however little it turns.
             *lever = passing.max(16.0 * S::STEP / sweep);
@@ -93,5 +97,5 @@ pub(super) fn joined<S: HostScalar>(phases: &[SegmentPhase]) -> MotionSpec {
         let gain = after - std::mem::replace(&mut speed, after);
         (duration, if duration > 0.0 { gain / duration } else { 0.0 })
     });
-    MotionSpec::Profile { v0, pieces: pieces.collect() }
+    MotionSpec::profile(v0, pieces)
 }

@@ -51,16 +51,17 @@ impl JudgedFleet {
 /// How long an agent of a plan takes.
 fn time(agent: &Agent, course: &Course) -> f64 {
     match &agent.motion {
-        MotionSpec::Profile { pieces, .. } => pieces.iter().map(|piece| piece.0).sum(),
+        MotionSpec::Profile { pieces, .. } => pieces.iter().map(|piece| piece.duration).sum(),
         _ => course.duration(),
     }
 }
 
 /// How far an agent of a plan has come after a time.
 fn travelled(agent: &Agent, course: &Course, time: f64) -> f64 {
-    let MotionSpec::Profile { v0, pieces } = &agent.motion else { return course.after(time) };
-    let (mut left, mut speed, mut way) = (time.max(0.0), *v0, 0.0);
-    for &(duration, acceleration) in pieces {
+    let MotionSpec::Profile { .. } = &agent.motion else { return course.after(time) };
+    let (v0, pieces) = agent.motion.pieces(course.length());
+    let (mut left, mut speed, mut way) = (time.max(0.0), v0, 0.0);
+    for (duration, acceleration) in pieces {
         let own = left.min(duration);
         way += own * (speed + 0.5 * acceleration * own);
         (left, speed) = (left - own, speed + acceleration * own);

@@ -10,9 +10,10 @@ use super::{
 use crate::certify::MotionCertificate;
 use crate::check::CheckReport;
 use crate::failure::ComputationError;
+use crate::fleet::stops_of_pivots;
 use crate::parallel;
 use pcr_core::{Curve, Motion, PlanError as Never, SpeedPlanLimits};
-use pcr_formats::scenario::{Labels, MotionSpec, Scenario, TURN};
+use pcr_formats::scenario::{Agent, Labels, MotionPiece, MotionSpec, Scenario};
 use pcr_formats::warning::WarningCode;
 
 /// Costs that differ by less are printed alike \[s\].
@@ -252,7 +253,7 @@ impl<'m> Planner<'_, 'm> {
             let phases = motion.profile().phases();
             if phases != given.profile().phases() {
                 let v0 = phases.first().map_or(0.0, |first| first.speed()[0]);
-                let pieces = scenario_pieces(motion).into_iter().filter(|(duration, _)| *duration > ROUNDED);
+                let pieces = scenario_pieces(agent, motion).into_iter().filter(|piece| piece.duration > ROUNDED);
                 agent.motion = MotionSpec::Profile { v0, pieces: pieces.collect() };
             }
         }
@@ -260,19 +261,20 @@ impl<'m> Planner<'_, 'm> {
     }
 }
 
-/// Durations and accelerations of a motion on the path of the scenario, on which turns in place have almost no length. A planned motion
-/// is nowhere faster than that of the file, so it stands before and after such a turn, or passes it in next to no time.
-fn scenario_pieces(motion: &Motion<'_, f64>) -> Vec<(f64, f64)> {
+/// The pieces of a motion on the path of the scenario, on which turns in place have no length. A planned motion is nowhere faster than
+/// that of the file, so it stands before and after such a turn, or passes a kink in next to no time.
+fn scenario_pieces(agent: &Agent, motion: &Motion<'_, f64>) -> Vec<MotionPiece> {
     let turns = motion.path().segments().iter().filter_map(|segment| match segment.curve() {
         Curve::Pivot { lever, .. } => Some((segment.from(), segment.from() + segment.length(), lever)),
         _ => None,
     });
-    let turns: Vec<(f64, f64, f64)> = turns.collect();
+    let turns: Vec<(f64, f64, f64, bool)> =
+        turns.zip(stops_of_pivots::<f64>(agent)).map(|((from, to, lever), stops)| (from, to, lever, stops)).collect();
     let mut pieces = Vec::new();
     for phase in motion.profile().phases() {
         let (mut rest, acceleration) = (phase.time().length(), phase.acceleration());
         let ([mut speed, _], mut at) = (phase.speed(), phase.length().lo);
-        let ends = turns.iter().flat_map(|&(from, to, _)| [from, to]);
+        let ends = turns.iter().flat_map(|&(from, to, ..)| [from, to]);
         // Ends of phases are at ends of turns but for rounding.
         let lengths = phase.length();
         let near = ROUNDED * (1.0 + lengths.hi);
@@ -281,16 +283,63 @@ fn scenario_pieces(motion: &Motion<'_, f64>) -> Vec<(f64, f64)> {
             let after = (speed * speed + 2.0 * acceleration * (end - at)).max(0.0).sqrt();
             let time = if end >= lengths.hi { rest } else { (2.0 * (end - at) / (speed + after)).min(rest) };
             let middle = 0.5 * (at + end);
-            match turns.iter().find(|(from, to, _)| (*from..=*to).contains(&middle)) {
-                None => pieces.push((time, acceleration)),
-                Some((.., lever)) if *lever >= 1.0 => pieces.push((time, acceleration * TURN / lever)),
-                // It is passed without a stop.
+            match turns.iter().find(|(from, to, ..)| (*from..=*to).contains(&middle)) {
+                None => pieces.push(MotionPiece::drive(time, acceleration)),
+                Some(_) if speed == 0.0 && acceleration == 0.0 => pieces.push(MotionPiece::drive(time, 0.0)),
+                Some((.., lever, true)) => pieces.push(MotionPiece::turn(time, acceleration / lever)),
+                // It stands at a kink, or passes it without a stop.
+                Some((.., lever, false)) if *lever >= 1.0 => pieces.push(MotionPiece::drive(time, 0.0)),
                 Some(_) => {}
             }
             (rest, speed, at) = (rest - time, after, end);
         }
     }
-    pieces
+    if turns.is_empty() { turning_while_it_waits(agent, pieces) } else { pieces }
+}
+
+/// The pieces of a motion of a disc, which waits while it turns in place, with its turns as they are in the motion of the agent. A planned
+/// motion waits there at least as long.
+fn turning_while_it_waits(agent: &Agent, pieces: Vec<MotionPiece>) -> Vec<MotionPiece> {
+    let mut before = 0.0;
+    let parts = agent.parts();
+    let turns = agent.path.iter().zip(&parts).filter_map(|(segment, phases)| {
+        before += segment.length();
+        let turning = phases.iter().filter(|phase| segment.takes_turning() && phase.moves());
+        let turning: Vec<_> = turning.map(|phase| MotionPiece::turn(phase.duration, phase.acceleration())).collect();
+        (!turning.is_empty()).then_some((before, turning))
+    });
+    let mut turns = turns.peekable();
+    if turns.peek().is_none() {
+        return pieces;
+    }
+    let near = ROUNDED * (1.0 + agent.length());
+    let (mut speed, _) = agent.motion.pieces(agent.length());
+    let (mut at, mut all) = (0.0, Vec::new());
+    let mut pieces = pieces.into_iter().peekable();
+    let is_wait = |piece: &MotionPiece, speed: f64| speed <= ROUNDED && piece.acceleration == 0.0;
+    while let Some(piece) = pieces.next() {
+        if !is_wait(&piece, speed) {
+            let after = (speed + piece.acceleration * piece.duration).max(0.0);
+            at += 0.5 * (speed + after) * piece.duration;
+            speed = after;
+            all.push(piece);
+            continue;
+        }
+        let mut wait = piece.duration;
+        while let Some(next) = pieces.next_if(|next| is_wait(next, speed)) {
+            wait += next.duration;
+        }
+        while let Some((_, turning)) = turns.next_if(|(place, _)| *place <= at + near) {
+            wait -= turning.iter().map(|piece| piece.duration).sum::<f64>();
+            all.extend(turning);
+        }
+        if wait > 0.0 {
+            all.push(MotionPiece::drive(wait, 0.0));
+        }
+    }
+    // Where it has arrived it turns as it stands.
+    all.extend(turns.flat_map(|(_, turning)| turning));
+    all
 }
 
 #[cfg(test)]
@@ -320,13 +369,23 @@ mod tests {
         ];
         let line = serde_json::json!({ "kind": "line", "length": 2.0 });
         let path = serde_json::json!([line, { "kind": "turn", "sweep": std::f64::consts::FRAC_PI_2 }, line]);
-        let agent = serde_json::json!({ "id": 1, "footprint": { "polygon": polygon }, "path": path,
+        let outlined = serde_json::json!({ "id": 1, "footprint": { "polygon": polygon }, "path": path,
             "start": { "x": 0.0, "y": 0.0, "heading": 0.0 }, "profile": { "v0": 0.0, "pieces": pieces } });
+        let mut disc = outlined.clone();
+        disc.as_object_mut().expect("an object").remove("footprint");
+        disc["radius"] = serde_json::json!(0.5);
+        [outlined, disc].iter().for_each(is_read_as_written);
+    }
+
+    fn is_read_as_written(agent: &serde_json::Value) {
         let mut scenario = Scenario::from_value(&serde_json::json!({ "agents": [agent] })).expect("a scenario");
         let fleet = Fleet::<f64>::of_bodies(&scenario).expect("it fits");
         let motions = fleet.motions();
-        assert!(motions[0].path().segments().iter().any(|segment| matches!(segment.curve(), Curve::Pivot { .. })));
-        scenario.agents[0].motion = MotionSpec::Profile { v0: 0.0, pieces: scenario_pieces(&motions[0]) };
+        let pivots = motions[0].path().segments().iter().filter(|it| matches!(it.curve(), Curve::Pivot { .. }));
+        assert_eq!(pivots.count(), usize::from(scenario.agents[0].footprint.is_some()));
+        scenario.agents[0].motion =
+            MotionSpec::Profile { v0: 0.0, pieces: scenario_pieces(&scenario.agents[0], &motions[0]) };
+        assert!(scenario.agents[0].motion.turns_in_place());
         let read = Scenario::from_json(&scenario.to_json()).expect("what was written");
         let again = Fleet::<f64>::of_bodies(&read).expect("it fits");
         let again = again.motions();

@@ -10,7 +10,7 @@ use super::edge_orientation::EdgeOrientation;
 use crate::owned_path::{PathElement, StartPose};
 use pcr_formats::import::{self, ImportOptions, InputFormat, Warnings};
 use pcr_formats::plane_geometry::distance;
-use pcr_formats::scenario::{PathSegment, PlacedSegment, TURN};
+use pcr_formats::scenario::{PathSegment, PlacedSegment};
 use pcr_formats::vda5050::decode::DecodeError;
 use pcr_formats::vda5050::order::{OrderEdge, OrderNode};
 use pcr_formats::vda5050::order_state::OrderState;
@@ -105,10 +105,10 @@ impl OrderPathSegment {
         let shape = match self.shape {
             OrderPathShape::Drive(placed, side) => {
                 let shape = match placed.shape {
-                    PathSegment::Line { .. } | PathSegment::Cusp => PathSegment::Line { length: along },
                     PathSegment::Arc { radius, sweep } => {
                         PathSegment::Arc { radius, sweep: (along / radius).copysign(sweep) }
                     }
+                    _ => PathSegment::Line { length: along },
                 };
                 OrderPathShape::Drive(PlacedSegment { shape, ..placed }, side)
             }
@@ -200,7 +200,7 @@ impl OrderPath {
             ));
         }
         // How far the heading of lines and arcs is from that of the curve is not known here.
-        let is_curved = |shape: &PathSegment| matches!(*shape, PathSegment::Arc { radius, .. } if radius != TURN);
+        let is_curved = |shape: &PathSegment| matches!(shape, PathSegment::Arc { .. });
         let is_ahead = orientation == EdgeOrientation::Tangential(0.0);
         if self.spread > 0.0 && (!is_ahead || agent.path.iter().any(is_curved)) {
             self.unknown.push((k + 1, format!("edges[{k}] is curved")));
@@ -210,7 +210,7 @@ impl OrderPath {
         for &shape in &agent.path {
             let placed = PlacedSegment { start: at, heading, shape };
             (at, heading) = (placed.end(), placed.heading_at_end());
-            if !matches!(shape, PathSegment::Arc { radius: TURN, .. }) {
+            if shape.length() > 0.0 {
                 self.follow(placed);
             }
         }
@@ -219,11 +219,11 @@ impl OrderPath {
 
     fn follow(&mut self, placed: PlacedSegment) {
         match placed.shape {
-            PathSegment::Line { .. } | PathSegment::Cusp => self.line(placed.end(), 0.0),
             PathSegment::Arc { .. } => {
                 self.line(placed.start, 0.0);
                 self.push(placed, 0.0);
             }
+            _ => self.line(placed.end(), 0.0),
         }
     }
 
@@ -242,7 +242,8 @@ impl OrderPath {
             PathSegment::Line { length } => {
                 PathElement::Shift { ahead: length * side.cos(), left: length * side.sin() }
             }
-            // Of an order there are lines and arcs; this one turns the way as a cusp does.
+            // Of an order there are lines and arcs; these turn the way.
+            PathSegment::Turn { sweep } | PathSegment::Kink { sweep } => PathElement::Turn { sweep, lever: None },
             PathSegment::Cusp => PathElement::Turn { sweep: PI, lever: None },
             PathSegment::Arc { radius, sweep } => PathElement::Arc { radius, sweep },
         });
@@ -420,7 +421,6 @@ fn along(placed: &PlacedSegment, point: [f64; 2]) -> f64 {
     let (ahead, left) = (x * cos + y * sin, y * cos - x * sin);
     match placed.shape {
         PathSegment::Line { length } => ahead.clamp(0.0, length),
-        PathSegment::Cusp => 0.0,
         PathSegment::Arc { radius, sweep } => {
             // The centre is to the left of an arc that turns left.
             let towards = if sweep < 0.0 { -left } else { left };
@@ -436,6 +436,7 @@ fn along(placed: &PlacedSegment, point: [f64; 2]) -> f64 {
             };
             radius * angle
         }
+        _ => 0.0,
     }
 }
 

@@ -7,7 +7,7 @@ use super::demo::BrokerDemo;
 use super::threads::thread;
 use super::{ServeArgs, bound, bridge, listen};
 use pcr_drawing::fleet_page;
-use pcr_formats::scenario::{Agent, MotionSpec, PathSegment, Scenario, TURN};
+use pcr_formats::scenario::{Agent, MotionSpec, PathSegment, Scenario};
 use pcr_serve::http::{HttpContent, Readiness, RobotDrawing};
 use pcr_serve::journal::Journal;
 use pcr_serve::journal_entry::{JournalStore, NullStore};
@@ -256,7 +256,8 @@ fn site(listener: &TcpListener, unready: Option<Readiness>) -> HttpContent {
 /// The collision map of a robot, if all set off now.
 fn draw(fleet: &[RobotDrawing], ego: usize) -> Result<String, String> {
     let agents = fleet.iter().zip(1..).map(|(robot, id)| {
-        let turn = |sweep| PathSegment::Arc { radius: TURN, sweep };
+        // The map is without times, and no motion of the robot stops.
+        let turn = |sweep| PathSegment::Kink { sweep };
         let path = robot.course.shapes().iter().flat_map(|shape| match *shape {
             PathElement::Line { length } => vec![PathSegment::Line { length }],
             PathElement::Arc { radius, sweep } => vec![PathSegment::Arc { radius, sweep }],
