@@ -1,11 +1,13 @@
 #!/usr/bin/env bash
-# Mutants of pcr-core, of pcr-fixed, of the importers, of the readers of scenarios, of the writers of exclusions and of the proofs
-# of start delays, run against the tests that reach them.
+# Mutants of pcr-core, of pcr-fixed, of the importers, of the readers of scenarios, of the writers of exclusions, of the proofs
+# of start delays and of the line protocol, run against the tests that reach them.
 #   tests/mutants/run.sh FOLDER [SECONDS [JOBS]]     a copy of what is committed is made in FOLDER/copy and built there; a mutant has
 #                                                    SECONDS of tests (4). Again: goes on where it stopped. FOLDER/results
 #                                                    has a line a mutant, `mutants table FOLDER` counts them.
 #   ONLY='scalar|pcr-fixed' tests/mutants/run.sh FOLDER    those whose line in FOLDER/all matches; one ONLY a folder
 #   ONLY=exclusions/ SAMPLE=40 tests/mutants/run.sh FOLDER  of these only so many, at random, always the same
+#   ONLY=serve/ TESTS=pcr-serve WAIT=4 tests/mutants/run.sh FOLDER   with the tests of these packages, not of all; a test that
+#                                                    waits for ever is ended after 4 times (60) the core's time that it may take
 set -euo pipefail
 cd "$(dirname "$0")/../.."
 folder=$(realpath -m "$1") seconds=${2:-4} jobs=${3:-2}
@@ -22,6 +24,10 @@ importers() {
 }
 # The audit and what it reports is not here.
 writers() { find pcr-host/exclusions/src -name '*.rs' | grep -vE 'src/(lib|audit|meetings|nearest|report|settings)\.rs' | sorted; }
+# What comes over a socket, up to what it asks of the supervisor; not the sockets, whose macro is called within functions.
+line_protocol() {
+  printf 'pcr-host/serve/src/%s.rs\n' clients connection_limit event hello line_angles lines query refusals request_error server token unanswered_lines
+}
 # Those that are run, of FOLDER/all.
 chosen() { grep -E "${ONLY:-.}" "$folder/all" | if [ -n "${SAMPLE:-}" ]; then shuf -n "$SAMPLE" --random-source=<(yes); else cat; fi; }
 
@@ -36,6 +42,7 @@ put() {
   "$tool" put 20000 pcr-fixed/src/lib.rs $(fixed)
   "$tool" put 30000 pcr-host/exclusions/src/lib.rs $(writers)
   "$tool" put 40000 proofs/certify/src/lib.rs proofs/certify/src/delays.rs
+  "$tool" put 50000 pcr-host/serve/src/lib.rs $(line_protocol)
 }
 
 if [ ! -e "$copy" ]; then
@@ -51,7 +58,7 @@ if [ ! -e "$folder/binaries" ]; then
   export SKIP
   for ((;;)); do
     put >"$folder/list"
-    if cargo check -q --profile checked --locked -p pcr-exclusions -p pcr-formats -p pcr-fixed -p pcr-certify -p pcr-core -F pcr-core/micromath \
+    if cargo check -q --profile checked --locked -p pcr-exclusions -p pcr-formats -p pcr-fixed -p pcr-certify -p pcr-serve -p pcr-core -F pcr-core/micromath \
       --message-format=short 2>"$folder/messages"; then break; fi
     more=$("$tool" broken <"$folder/messages" | tr '\n' ' ')
     [ -n "$more" ] || { cat "$folder/messages" >&2; exit 1; }
@@ -59,8 +66,12 @@ if [ ! -e "$folder/binaries" ]; then
     SKIP+=" $more"
   done
   # Not the tests of the tool `pcr`: the files that they write have one name, and jobs run side by side.
-  cargo test --profile checked --locked -p pcr-core -p pcr-fixed -p pcr-formats -p pcr-exclusions -p pcr-certify -p pcr-tests --lib --test all --no-run \
-    --message-format=json |
+  tests=${TESTS:-pcr-core pcr-fixed pcr-formats pcr-exclusions pcr-certify pcr-serve pcr-tests}
+  targets=(--lib)
+  if [[ $tests == *pcr-tests* ]]; then targets+=(--test all); fi
+  if [[ $tests == *pcr-serve* ]]; then targets+=(--test serve); fi
+  # shellcheck disable=SC2086
+  cargo test --profile checked --locked $(printf -- '-p %s ' $tests) "${targets[@]}" --no-run --message-format=json |
     python3 -c 'import json, os, sys
 for line in sys.stdin:
     message = json.loads(line)

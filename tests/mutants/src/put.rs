@@ -236,6 +236,7 @@ pub fn put(after: u32, root: &str, files: &[String]) {
         let package = match package {
             "pcr-fixed" => "pcr-fixed/",
             "pcr-host/exclusions" => "exclusions/",
+            "pcr-host/serve" => "serve/",
             _ => "",
         };
         mutator.file = format!("{package}{name}");

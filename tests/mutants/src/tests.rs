@@ -37,7 +37,7 @@ impl Binary {
     /// Runs tests one after the other, up to the first that fails, with a limit on the time of a core.
     pub fn run(&self, names: &[&str], limit: u64, variable: (&str, &str)) -> Output {
         // Memory is limited too, as an endless loop may fill it; and time, as a process may wait for ever.
-        let script = "ulimit -v 8000000; ulimit -t $0; exec timeout -s KILL $((60 * $0)) \"$@\"";
+        let script = "ulimit -v 8000000; ulimit -t $0; exec timeout -s KILL $((${WAIT:-60} * $0)) \"$@\"";
         Command::new("sh")
             .args(["-c", script, &limit.to_string()])
             .arg(&self.path)
