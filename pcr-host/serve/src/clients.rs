@@ -325,6 +325,79 @@ mod tests {
     use super::*;
     use std::net::TcpListener;
 
+    /// Lines as they are taken, by their lengths, with whether there is a request in them; ends after so many.
+    fn taken(text: &str, most: usize) -> Vec<(usize, bool)> {
+        let mut taken = Vec::new();
+        // Parts smaller than a line.
+        let mut input = BufReader::with_capacity(1 << 16, text.as_bytes());
+        read(&mut input, |line, _, request| {
+            assert_eq!(request.as_ref().is_some_and(RequestLine::is_object), line.len() < 10);
+            taken.push((line.len(), request.is_some()));
+            taken.len() < most
+        })
+        .unwrap();
+        taken
+    }
+
+    #[test]
+    fn lines_are_read_up_to_their_longest_and_longer_ones_are_skipped() {
+        let line = |length| "x".repeat(length);
+        for (length, is_read) in [(LONGEST - 1, true), (LONGEST, true), (LONGEST + 1, false), (3 * LONGEST, false)] {
+            // Of one that is too long, a byte more than the longest is read.
+            let long = (length.min(LONGEST + 1), is_read);
+            let lines = format!("{{}}\n{}\n\n  \n{{}}\n", line(length));
+            assert_eq!(taken(&lines, 9), [(2, true), long, (2, true)], "{length}");
+            assert_eq!(taken(&lines, 2), [(2, true), long], "{length}");
+            // The last line needs no end.
+            assert_eq!(taken(&format!("{{}}\n{}", line(length)), 9), [(2, true), long], "{length}");
+        }
+        assert_eq!(taken("", 9), []);
+        assert_eq!(taken("\r\n{}\r\n{}", 9), [(2, true); 2]);
+    }
+
+    /// Takes a byte from time to time.
+    struct SlowOutput {
+        turns: usize,
+        text: Vec<u8>,
+        ends: Option<ErrorKind>,
+    }
+
+    impl Write for SlowOutput {
+        fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
+            self.turns += 1;
+            match self.turns % 4 {
+                0 => {
+                    self.text.push(bytes[0]);
+                    Ok(1)
+                }
+                1 => Err(ErrorKind::Interrupted.into()),
+                2 => Err(ErrorKind::WouldBlock.into()),
+                _ => match self.ends {
+                    Some(kind) => Err(kind.into()),
+                    None => Err(ErrorKind::TimedOut.into()),
+                },
+            }
+        }
+
+        fn flush(&mut self) -> io::Result<()> {
+            Ok(())
+        }
+    }
+
+    #[test]
+    fn a_slow_output_is_waited_for_unless_it_is_let_go() {
+        let written = |is_closed: bool, ends| {
+            let (sender, lines) = outbox();
+            let _sender = (!is_closed).then_some(sender);
+            let mut output = SlowOutput { turns: 0, text: Vec::new(), ends };
+            let end = put(&lines, &mut output, b"answer").map_err(|error| error.kind());
+            (String::from_utf8(output.text).unwrap(), end)
+        };
+        assert_eq!(written(false, None), ("answer".into(), Ok(())));
+        assert_eq!(written(true, None), (String::new(), Err(ErrorKind::WouldBlock)));
+        assert_eq!(written(false, Some(ErrorKind::BrokenPipe)), (String::new(), Err(ErrorKind::BrokenPipe)));
+    }
+
     /// A client whose machine had gone kept its place until the program ended.
     #[test]
     fn clients_are_asked_whether_they_are_still_there() {

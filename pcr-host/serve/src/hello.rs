@@ -41,7 +41,7 @@ impl ConnectionRefusal {
     /// Returns the reason in words, for the log. It has no part of what the client has sent but the origin.
     pub fn reason(&self) -> String {
         match self {
-            Self::Http { .. } => "a browser or an HTTP client has sent a request to the lines, which are no web server: a web page may try to \\
+            Self::Http { .. } => "a browser or an HTTP client has sent a request to the lines, which are no web server: a web page may try to \
                  command robots"
                 .into(),
             Self::Tls => "it begins as a connection with TLS, which the lines do not have".into(),
@@ -254,5 +254,23 @@ mod tests {
         assert_eq!(origin([&post.as_bytes()[..20], &post.as_bytes()[20..]]).unwrap(), "http://evil.example");
         assert_eq!(origin([b"GET / HTTP/1.1\r\n", b""]), None);
         assert_eq!(origin([b"Origin: ", "x".repeat(5000).as_bytes()]).unwrap().len(), 200);
+    }
+
+    #[test]
+    fn reasons_are_a_line_of_words() {
+        for refusal in [
+            ConnectionRefusal::Http { origin: None },
+            ConnectionRefusal::Tls,
+            ConnectionRefusal::NoObject(Value::Null),
+            ConnectionRefusal::TooLong(LONGEST),
+            ConnectionRefusal::Late,
+            ConnectionRefusal::Crowded,
+            ConnectionRefusal::Hello(RequestError::NoHello, Value::Null),
+            ConnectionRefusal::Hello(RequestError::Unauthorized { why: "no token" }, Value::Null),
+            ConnectionRefusal::Hello(RequestError::Full { places: 2 }, Value::Null),
+        ] {
+            let reason = refusal.reason();
+            assert!(!reason.contains(['\n', '\\']) && !reason.contains("  "), "{reason}");
+        }
     }
 }

@@ -139,9 +139,9 @@ impl RequestLine {
         let mut own =
             Self { unanswered: None, id: Value::Null, verb: Err(malformed("")), has_version: false, is_object: false };
         let value: Result<UniqueKeysJson, _> = serde_json::from_slice(line);
-        // JSON that is an error has a name twice.
+        // JSON that is an error has a name twice, in an object that it is or has in it.
         own.is_object = matches!(&value, Ok(UniqueKeysJson(Value::Object(_))))
-            || value.as_ref().is_err_and(|error| error.is_data());
+            || line.trim_ascii_start().starts_with(b"{") && value.as_ref().is_err_and(|error| error.is_data());
         match value {
             Ok(UniqueKeysJson(Value::Object(object))) => own.verb = own.verb_of(object),
             Ok(_) => own.verb = Err(malformed("it is no JSON object")),

@@ -65,6 +65,8 @@ impl Server {
     /// What comes back for some bytes, until the connection ends.
     fn said(&self, bytes: &[u8]) -> Vec<Value> {
         let stream = self.connected();
+        // One that does not end fails the test, and does not hold it up.
+        stream.set_read_timeout(Some(Duration::from_secs(20))).unwrap();
         let (mut writer, whole) = (stream.try_clone().unwrap(), bytes.to_vec());
         // It may end before all is written.
         let writes = thread::spawn(move || {
@@ -72,6 +74,7 @@ impl Server {
         });
         let lines = BufReader::new(&stream).lines().map_while(Result::ok);
         let said = lines.map(|line| serde_json::from_str(&line).unwrap()).collect();
+        let _ = stream.shutdown(Shutdown::Both);
         writes.join().unwrap();
         said
     }
@@ -186,6 +189,39 @@ fn nothing_is_carried_out_of_a_connection_that_does_not_begin_with_a_hello() {
         assert!(!said[0].to_string().contains(&server.token));
         assert_eq!(server.robots(), ["a"], "{shown}");
     }
+    // What a connection begins as is told, also if it comes in pieces.
+    for (bytes, why) in [
+        (text(&post(REMOVE)), "no web server"),
+        (text("Host: a\n"), "no web server"),
+        (client_hello(), "without TLS"),
+        ([vec![0x16, 3], vec![1; hello::LONGEST]].concat(), "without TLS"),
+        (text(&format!("GET /{}", "a".repeat(hello::LONGEST))), "no web server"),
+        (text("[]\n"), "no JSON object"),
+        (text("POSTER\n"), "no JSON object"),
+        (vec![b'{'; hello::LONGEST + 1], "too long"),
+    ] {
+        let mut stream = server.connected();
+        stream.set_nodelay(true).unwrap();
+        let mut said = String::new();
+        for piece in [&bytes[..2], &bytes[2..]] {
+            // It may have ended before.
+            let _ = stream.write_all(piece);
+            thread::sleep(Duration::from_millis(20));
+        }
+        stream.read_to_string(&mut said).unwrap();
+        assert!(said.contains(why), "{why}: {said}");
+    }
+    // What cannot become a hello ends the connection at once, and not at its end.
+    let mut stream = server.connected();
+    stream.write_all(b" [").unwrap();
+    stream.set_read_timeout(Some(Duration::from_secs(3))).unwrap();
+    assert!(stream.read_to_string(&mut String::new()).is_ok());
+    // A hello may be as long as said, with its end.
+    for (length, answers) in [(hello::LONGEST, 2), (hello::LONGEST + 1, 1)] {
+        let hello = format!("{}{}\n", server.hello(), " ".repeat(length - server.hello().len() - 1));
+        let said = server.said(format!("{hello}[]\n").as_bytes());
+        assert_eq!((said.len(), said[0].get("ok").is_some()), (answers, answers == 2), "{said:?}");
+    }
     // The others are served as before.
     assert_eq!(client.ask(REMOVE)["ok"]["removed"], true);
 }
@@ -198,6 +234,8 @@ fn a_connection_ends_at_the_first_line_that_is_no_object() {
         for bad in [
             post(REMOVE).into_bytes(),
             b"[]".to_vec(),
+            // What is wrong in it as well is no reason to go on.
+            b"[{\"verb\": \"watch\", \"verb\": \"watch\"}]".to_vec(),
             b"nonsense".to_vec(),
             b"Host: a".to_vec(),
             client_hello(),
@@ -246,7 +284,9 @@ fn a_hello_may_come_in_pieces_but_not_for_ever() {
     assert!(said[1].contains("\"path\":1"), "{said:?}");
     // A byte from time to time does not make the time longer.
     let server = Server::new("slower", |access| access.within = Duration::from_millis(200));
-    for begin in [&server.hello()[..20], "", "x", "POST"] {
+    for (begin, why) in
+        [(&server.hello()[..20], "in time"), ("", "in time"), ("x", "in time"), ("POST /", "no web server")]
+    {
         let stream = server.connected();
         let mut drips = stream.try_clone().unwrap();
         drips.write_all(begin.as_bytes()).unwrap();
@@ -258,6 +298,7 @@ fn a_hello_may_come_in_pieces_but_not_for_ever() {
         });
         let said: Vec<String> = BufReader::new(&stream).lines().map_while(Result::ok).collect();
         assert!(said.len() == 1 && said[0].contains("\"malformed\""), "{begin}: {said:?}");
+        assert!(said[0].contains(why), "{begin}: {said:?}");
         drop(stream);
         dripping.join().unwrap();
     }
@@ -280,6 +321,7 @@ fn connections_without_a_hello_take_no_place_from_clients() {
         thread::yield_now();
     }
     assert!(first.ask(&requests()[0]).get("ok").is_some());
+    assert_eq!(strangers.iter().filter(has_ended).count(), 36);
     let mut second = server.client();
     assert!(second.ask(REMOVE).get("ok").is_some());
     // A third one knows the token, and is told why it is none.
