@@ -90,3 +90,43 @@ fn elements_of_opentcs_that_are_not_known_are_told() {
     let known = model("maxVelocity=\"1000\"", "<maxVehicleBoundingBox/><property/>", &vehicle("vehicleLayout"));
     assert_eq!(read(InputFormat::OpenTcs, &known), Ok(Vec::new()));
 }
+
+/// A place in the file was the name of what had none, and written exclusions named a path that has an empty name.
+#[test]
+fn what_has_no_name_is_refused() {
+    let plant = model("", "", "");
+    let roadmap = |node: &str| {
+        let at = |id: &str, x: u32| format!("<node {id}><data key=\"c\">{x},0</data></node>");
+        format!(
+            "<graphml><key id=\"c\" for=\"node\" attr.name=\"coords\"/><graph edgedefault=\"undirected\">{}{}{}\
+             <edge source=\"a\" target=\"b\"/></graph></graphml>",
+            at("id=\"a\"", 0),
+            at("id=\"b\"", 5),
+            at(node, 9)
+        )
+    };
+    let road = |id: &str| {
+        let line = "<geometry s=\"0\" x=\"0\" y=\"0\" hdg=\"0\" length=\"5\"><line/></geometry>";
+        let one = |id: &str| format!("<road {id} junction=\"-1\" length=\"5\"><planView>{line}</planView></road>");
+        format!("<OpenDRIVE>{}{}</OpenDRIVE>", one("id=\"1\""), one(id))
+    };
+    for (format, text, expected) in [
+        (InputFormat::OpenTcs, plant.replacen("path name=", "path names=", 1), "path at place 1: it has no name"),
+        (InputFormat::OpenTcs, plant.replacen("name=\"p\"", "name=\" \"", 1), "path at place 1: it has no name"),
+        (InputFormat::OpenTcs, plant.replacen(" name=\"b\"", "", 1), "point at place 2: it has no name"),
+        (InputFormat::Ccbs, roadmap(""), "node at place 3: it has no id"),
+        (InputFormat::Ccbs, roadmap("id=\"\""), "node at place 3: it has no id"),
+        (InputFormat::OpenDrive, road(""), "road at place 2: it has no id"),
+        (InputFormat::OpenDrive, road("id=\"\""), "road at place 2: it has no id"),
+    ] {
+        let error = read(format, &text).expect_err(expected);
+        assert!(error.starts_with(expected), "{error}");
+    }
+    for (format, text) in [
+        (InputFormat::OpenTcs, plant),
+        (InputFormat::Ccbs, roadmap("id=\"c\"")),
+        (InputFormat::OpenDrive, road("id=\"2\"")),
+    ] {
+        assert!(read(format, &text).is_ok(), "{text}");
+    }
+}

@@ -56,7 +56,11 @@ pub(super) fn roadmap(text: &str, warnings: &mut Warnings) -> Result<Layout, Imp
     };
     let mut nodes = UniqueNames::new();
     for (k, node) in children(graph, "node").enumerate() {
-        let id = node.attribute("id").map_or_else(|| format!("at place {}", k + 1), str::to_owned);
+        let Some(id) = node.attribute("id").filter(|id| !id.trim().is_empty()).map(str::to_owned) else {
+            // No edge leads to it.
+            warnings.lose(format_args!("node at place {}: it has no id", k + 1));
+            continue;
+        };
         let datum = child(node, "data").map(content).unwrap_or_default();
         let at = datum.split_once(',').and_then(|(x, y)| {
             let number = |text: &str| text.trim().parse::<f64>().ok().filter(|x| x.abs() <= crate::scenario::LIMIT);

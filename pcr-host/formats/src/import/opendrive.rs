@@ -92,7 +92,11 @@ pub(super) fn read(text: &str, options: &ImportOptions, warnings: &mut Warnings)
     let mut links = Vec::new();
     let (mut widest, mut open) = ([0.0_f64; 2], Vec::new());
     for (k, road) in children(root, "road").enumerate() {
-        let id = road.attribute("id").map_or_else(|| format!("at place {}", k + 1), str::to_owned);
+        let Some(id) = road.attribute("id").filter(|id| !id.trim().is_empty()).map(str::to_owned) else {
+            // No link leads to it.
+            warnings.lose(format_args!("road at place {}: it has no id", k + 1));
+            continue;
+        };
         let name = format!("road {id}");
         let read = |warnings: &mut Warnings| -> Result<_, ImportError> {
             ROAD.check_attributes(road, &name, warnings)?;

@@ -79,10 +79,11 @@ pub(super) fn read(
     let mut angles: Vec<(usize, f64)> = Vec::new();
     for (k, point) in children(root, "point").enumerate() {
         warn_of_unknown(point, &OF_POINT, warnings);
-        let id = point.attribute("name").map_or_else(|| format!("at place {}", k + 1), str::to_owned);
-        match point_coordinates(point, &id, &drawn) {
+        let read =
+            name(point, k).and_then(|id| point_coordinates(point, &id, &drawn).map(|(at, drawn)| (id, at, drawn)));
+        match read {
             Err(error) => warnings.lose(error),
-            Ok((at, drawn)) => {
+            Ok((id, at, drawn)) => {
                 let place = nodes
                     .add(LayoutNode { id: ElementId::Text(id.clone()), name: None, level: 0, point: at }, warnings);
                 shifts.resize(shifts.len().max(place + 1), None);
@@ -111,14 +112,8 @@ pub(super) fn read(
     let mut edges = UniqueNames::new();
     for (k, path) in children(root, "path").enumerate() {
         warn_of_unknown(path, &OF_PATH, warnings);
-        let id = path.attribute("name").map_or_else(|| format!("at place {}", k + 1), str::to_owned);
-        match edge(
-            path,
-            id,
-            &ModelFrame { nodes: &nodes, shifts: &shifts, units, drawn: &drawn },
-            options.tolerance(),
-            warnings,
-        ) {
+        let frame = ModelFrame { nodes: &nodes, shifts: &shifts, units, drawn: &drawn };
+        match name(path, k).and_then(|id| edge(path, id, &frame, options.tolerance(), warnings)) {
             Ok(mut edge) => {
                 // In the other direction a vehicle drives backward: it does not turn round.
                 edge.facing[1] = Facing::Backward;
@@ -154,6 +149,14 @@ pub(super) fn read(
         nodes: nodes.into_list(),
         edges,
         ..Layout::default()
+    })
+}
+
+/// The name of a point or path, without which blocks, vehicles and routes cannot name it.
+fn name(element: roxmltree::Node<'_, '_>, place: usize) -> Result<String, ImportError> {
+    let name = element.attribute("name").filter(|name| !name.trim().is_empty()).map(str::to_owned);
+    name.ok_or_else(|| {
+        ImportError::new(format!("{} at place {}: it has no name", element.tag_name().name(), place + 1))
     })
 }
 
