@@ -119,3 +119,32 @@ fn a_place_is_free_at_an_instant_or_blocked() {
     assert_eq!(safe("b", [0.0, 0.0], 0.0), json!([[0.0, 0.0]]));
     assert_eq!(safe("b", [0.0, 0.0], 9.0), json!([[0.0, 9.0]]));
 }
+
+/// A part of the path that is behind, or beyond its end, is neither free nor blocked.
+#[test]
+fn a_part_that_is_asked_about_is_ahead() {
+    let mut asks = Asks::new();
+    asks.events(&add("a", 0.0, 0.0));
+    asks.events(&mission("a", 3.0));
+    assert!(asks.ask(&json!({ "verb": "position", "robot": "a", "path": 2, "at": [1, 1] }))["ok"].is_object());
+    asks.now += 0.5;
+    asks.supervisor.settle(asks.now).unwrap();
+    let robots = asks.ask(&json!({ "verb": "query", "what": "robots" }));
+    let at = robots["ok"]["robots"][0]["at"][0].as_f64().unwrap();
+    assert_eq!(at, 1.0);
+    let mut answer = |[lo, hi]: [f64; 2], until: f64| {
+        let line = json!({ "verb": "query", "what": "safe", "robot": "a", "length": [lo, hi], "until": until });
+        let answer = asks.ask(&line);
+        (answer["ok"]["safe"].clone(), answer["error"]["code"].clone())
+    };
+    for length in [[1.0, 3.0], [1.0, 1.0], [3.0, 3.0], [1.5, 2.0], [3.0, 3.0 + 1e-9]] {
+        assert_eq!(answer(length, 9.0), (json!([[0.0, 9.0]]), Value::Null), "{length:?}");
+    }
+    for length in [[0.9, 2.0], [0.0, 3.0], [-1.0, -0.5], [2.0, 1.5], [2.0, 3.1], [3.1, 3.1], [3.1, 2.0], [0.5, 0.7]] {
+        assert_eq!(answer(length, 9.0), (Value::Null, json!("invalid")), "{length:?}");
+    }
+    for until in [-1e-9, 1.1e6, -5.0] {
+        assert_eq!(answer([1.0, 3.0], until), (Value::Null, json!("invalid")), "{until}");
+    }
+    assert_eq!(answer([1.0, 3.0], 1e6), (json!([[0.0, 1e6]]), Value::Null));
+}

@@ -684,10 +684,10 @@ fn names_are_limited_in_characters_and_ids_come_back_as_they_were() {
     let says = |line: String| handle(&mut supervisor(), line.as_bytes(), 0.0, 0.0).answer;
     let refused = |name: &str| says(add("1", name)).get("error").is_some();
     assert!(!refused(&"é".repeat(200)) && refused(&"é".repeat(201)) && refused("a\u{202e}b"));
-    for id in ["7", "-7", "18446744073709551615", "0.5", "\"12345678901234567890123\""] {
+    for id in ["7", "-7", "18446744073709551615", "0.5", "-9007199254740991.0", "\"12345678901234567890123\""] {
         assert_eq!(says(add(id, "a"))["id"].to_string(), id);
     }
-    for id in ["12345678901234567890123", "1e300"] {
+    for id in ["12345678901234567890123", "-12345678901234567890123", "1e300", "9007199254740992.0"] {
         let answer = says(add(id, "a"));
         assert!(
             answer["id"].is_null() && answer["error"]["message"].to_string().contains("has to be a text"),

@@ -274,6 +274,26 @@ fn a_connection_ends_at_the_first_line_that_is_no_object() {
 }
 
 #[test]
+fn events_are_for_clients_that_watch() {
+    let server = Server::new("events", |_| {});
+    let mut client = server.client();
+    assert_eq!(client.ask(&requests()[0])["ok"]["path"], 1);
+    let mission = |k: usize| {
+        json!({ "id": k, "verb": "mission", "robot": "a", "mission": k.to_string(), "path": [{ "kind": "line", "length": 0.1 }] })
+            .to_string()
+    };
+    let counts = |k: usize| json!({ "id": k, "verb": "query", "what": "counts" }).to_string();
+    for k in 0..3 {
+        assert_eq!(client.ask(&mission(k))["id"], k);
+        // Its event would come before the next answer.
+        assert_eq!(client.ask(&counts(k + 10))["id"], k + 10);
+    }
+    assert!(client.ask("{\"verb\": \"watch\"}").get("ok").is_some());
+    assert_eq!(client.ask(&mission(3))["id"], 3);
+    assert!(client.next().unwrap().get("event").is_some());
+}
+
+#[test]
 fn a_hello_may_come_in_pieces_but_not_for_ever() {
     let server = Server::new("slow", |access| access.within = Duration::from_secs(60));
     let mut pieces = server.connected();
