@@ -56,6 +56,8 @@ impl Description {
             self.steps.iter().try_fold(Path::starting_at(self.pose).ok()?, |path, &(curve, length)| match curve {
                 Curve::Line => path.line(length),
                 Curve::Arc { radius, turn } => path.arc(radius, turn, length),
+                // A negative length would make a sweep to the other side.
+                Curve::Pivot { .. } if length < 0.0 => path.line(length),
                 Curve::Pivot { lever, turn } => {
                     path.pivot(lever, if turn == TurnSide::Left { length / lever } else { -length / lever })
                 }

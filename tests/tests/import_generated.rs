@@ -8,18 +8,18 @@ use pcr_formats::scenario::{PathSegment, PlacedSegment};
 use serde_json::{Map, Value, json};
 use std::collections::BTreeMap;
 
-type Point = [f64; 2];
+pub(crate) type Point = [f64; 2];
 
 /// A way: points on it, one close to the next, its room \[m\] and its speed \[m/s\].
 #[derive(Clone, Debug)]
-struct Way {
+pub(crate) struct Way {
     points: Vec<Point>,
     room: f64,
     speed: Option<f64>,
 }
 
 /// What a file means: its ways by their names.
-type Meaning = BTreeMap<String, Way>;
+pub(crate) type Meaning = BTreeMap<String, Way>;
 
 /// How far the points of a way may be from the other one, which has lines and arcs within 1 mm, and chords for curves \[m\].
 const NEAR: f64 = 0.02;
@@ -33,7 +33,7 @@ fn apart(a: Point, b: Point) -> f64 {
 
 impl Way {
     /// Points along a polyline, in steps of at most [`STEP`].
-    fn along(corners: &[Point], room: f64, speed: Option<f64>) -> Self {
+    pub(crate) fn along(corners: &[Point], room: f64, speed: Option<f64>) -> Self {
         let mut points = Vec::new();
         for pair in corners.windows(2) {
             let count = (apart(pair[0], pair[1]) / STEP).ceil().max(1.0);
@@ -60,7 +60,7 @@ impl Way {
     }
 }
 
-fn is_same(a: &Meaning, b: &Meaning) -> bool {
+pub(crate) fn is_same(a: &Meaning, b: &Meaning) -> bool {
     a.len() == b.len() && a.iter().all(|(name, way)| b.get(name).is_some_and(|other| way.is(other)))
 }
 
@@ -267,7 +267,7 @@ fn order(root: &Value) -> Option<Meaning> {
 
 // What the importers make of it.
 
-fn options() -> ImportOptions {
+pub(crate) fn options() -> ImportOptions {
     let one = Some(1.0);
     ImportOptions {
         radius: Some(0.4),
@@ -279,7 +279,7 @@ fn options() -> ImportOptions {
     }
 }
 
-fn points(pieces: &[PlacedSegment]) -> Vec<Point> {
+pub(crate) fn points(pieces: &[PlacedSegment]) -> Vec<Point> {
     let mut corners: Vec<Point> = pieces.first().map(|first| first.start).into_iter().collect();
     for piece in pieces {
         let count = match piece.shape {
@@ -342,7 +342,7 @@ fn objects(value: &Value, path: &str, visit: &mut dyn FnMut(&str, &Map<String, V
 }
 
 /// The spellings of a key with one error in them.
-fn misspelt(key: &str) -> Vec<String> {
+pub(crate) fn misspelt(key: &str) -> Vec<String> {
     let letters: Vec<char> = key.chars().collect();
     let middle = letters.len() / 2;
     let mut less = letters.clone();

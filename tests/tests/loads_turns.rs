@@ -2,15 +2,16 @@
 
 use pcr_core::Motion;
 use pcr_fixed::{Q12, Q16, Q20};
-use pcr_formats::scenario::{Agent, Scenario};
+use pcr_formats::scenario::{Agent, PathSegment, Scenario};
+use pcr_planning::bodies::BodyFleet;
 use pcr_planning::check::CheckReport;
-use pcr_planning::fleet::{Fleet, HostScalar};
+use pcr_planning::fleet::HostScalar;
 use pcr_tests::generators::Dice;
 use pcr_tests::polygons::{Point, Polygon, apart, placed};
 use serde_json::{Value, json};
 use std::f64::consts::{FRAC_PI_2, PI};
 
-/// What turns in place of a nanometre cost in rounding \[m\], as docs/reference/formats.md has it.
+/// What rounding costs at most \[m\].
 const SLACK: f64 = 1e-4;
 
 const LONG: [Point; 4] = [[-0.3, -0.2], [0.9, -0.2], [0.9, 0.2], [-0.3, 0.2]];
@@ -121,24 +122,34 @@ fn a_load_of_the_outline_of_the_vehicle_changes_nothing() {
     assert!(met > 5, "{met}");
 }
 
+/// Length of a segment in the motion of a body: a turn in place has a lever of 1 m.
+fn length_of(segment: &PathSegment) -> f64 {
+    match segment {
+        PathSegment::Turn { sweep } => sweep.abs(),
+        other => other.length(),
+    }
+}
+
 /// The polygons that count at a length: two where one gives way to another.
 fn polygons<'p>(agent: &Agent, loads: [usize; 2], [own, load]: [&'p [Point]; 2], length: f64) -> Vec<&'p [Point]> {
     const ROUNDING: f64 = 1e-12;
     let mut from = 0.0;
     let mut polygons = Vec::new();
     for (k, segment) in agent.path.iter().enumerate() {
-        if from <= length + ROUNDING && length <= from + segment.length() + ROUNDING {
+        if from <= length + ROUNDING && length <= from + length_of(segment) + ROUNDING {
             polygons.push(if (loads[0]..=loads[1]).contains(&(k + 1)) { load } else { own });
         }
-        from += segment.length();
+        from += length_of(segment);
     }
     polygons
 }
 
 /// Conflicts are where the polygons are, and nowhere else, at many times.
 fn compare<S: HostScalar>(scenario: &Scenario, loads: [usize; 2], shapes: [&[Point]; 3], name: &str) -> usize {
-    let fleet = Fleet::<f64>::new(scenario).unwrap();
-    let motions = fleet.motions();
+    let bare = scenario.agents.iter().map(|agent| Agent { loads: Vec::new(), ..agent.clone() }).collect();
+    // Without loads, each is one body.
+    let bodies = BodyFleet::<f64>::new(&Scenario::new("", bare)).unwrap();
+    let motions = bodies.fleet.motions();
     let verdict = CheckReport::compute::<S>(scenario, false).unwrap();
     let at = |motion: &Motion<'_, f64>, polygon: &[Point], t: f64| -> Polygon {
         let pose = motion.path().pose_at(motion.length_at(t));

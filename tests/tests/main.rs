@@ -37,6 +37,7 @@ mod import_damage;
 mod import_facing;
 mod import_factsheet;
 mod import_generated;
+mod import_generated_opentcs;
 mod import_lif;
 mod import_lif_versions;
 mod import_nav2;

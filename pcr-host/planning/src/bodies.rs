@@ -158,11 +158,14 @@ fn parts<S: HostScalar>(agent: &Agent) -> Vec<(Agent, Option<Stretch>)> {
         let [first, last] = outline.segments;
         let (part, stretch) = if outlines.len() > 1 {
             let AgentPart { agent: part, from, .. } = agent.stretch(first, last);
-            // An agent that stands where the outline changes has both outlines. At its start or end that is so if the segments in
-            // between have no length.
+            // An agent that stands where the outline changes has both outlines. At its start or end that is so if it does not move and
+            // does not turn on the segments in between.
             let length = agent.length();
-            let rest: f64 = agent.path.iter().skip(last + 1).map(PathSegment::length).sum();
-            let ends = [from, rest].map(|way| way <= ROUNDING * (1.0 + length));
+            let way = |segments: &[PathSegment]| -> f64 {
+                segments.iter().map(|segment| segment.length() + segment.sweep().abs()).sum()
+            };
+            let [before, after] = [agent.path.get(..first), agent.path.get(last + 1..)];
+            let ends = [before, after].map(|segments| way(segments.unwrap_or_default()) <= ROUNDING * (1.0 + length));
             (settled::<S>(part), Some(Stretch { from, length, first, ends }))
         } else {
             (agent.clone(), None)

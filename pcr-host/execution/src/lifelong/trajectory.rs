@@ -286,7 +286,8 @@ fn pieces(
         }
         let scale = if driven > 0.0 { way / driven } else { 0.0 };
         for own in done {
-            phase(own.duration, own.speed[1] * scale, turning > 0.0);
+            let moves = own.speed.iter().any(|speed| *speed > 0.0);
+            phase(own.duration, own.speed[1] * scale, turning > 0.0 && moves);
         }
     }
     Ok(balanced(pieces))

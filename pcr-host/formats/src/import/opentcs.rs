@@ -11,7 +11,7 @@ use super::layout::{ElementId, Layout, LayoutEdge, LayoutNode};
 use super::nurbs::RationalBezier;
 use super::unique_names::UniqueNames;
 use super::warnings::{DIFFERENCE, LENGTH};
-use super::xml::{children, lose_astray, number, only, optional, parse, warn_of_unknown};
+use super::xml::{children, lose_astray, number, only, optional, parse, warn_of_unknown, warn_of_unknown_attributes};
 use super::{Facing, ImportError, ImportOptions, WarningCode, Warnings, vehicle_heading};
 use crate::footprint::Footprint;
 use crate::plane_geometry::distance;
@@ -33,6 +33,79 @@ const OF_PATH: [&str; 4] = ["peripheralOperation", "vehicleEnvelope", "property"
 
 /// The same of a vehicle.
 const OF_VEHICLE: [&str; 3] = ["boundingBox", "property", "vehicleLayout"];
+
+/// The same of the visual layout, and of what it says of a point or path.
+const OF_VISUAL_LAYOUT: [&str; 7] =
+    ["modelLayoutElement", "property", "layer", "layerGroup", "color", "shapeLayoutElement", "viewBookmark"];
+
+/// Attributes of all versions, of the elements of which something is read.
+const ATTRIBUTES: [(&str, &[&str]); 10] = [
+    ("model", &["name", "version"]),
+    (
+        "point",
+        &[
+            "id",
+            "name",
+            "positionX",
+            "positionY",
+            "positionZ",
+            "xPosition",
+            "yPosition",
+            "zPosition",
+            "type",
+            "vehicleOrientationAngle",
+        ],
+    ),
+    (
+        "path",
+        &[
+            "id",
+            "name",
+            "sourcePoint",
+            "destinationPoint",
+            "length",
+            "locked",
+            "maxVelocity",
+            "maxReverseVelocity",
+            "routingCost",
+        ],
+    ),
+    ("visualLayout", &["id", "name", "scaleX", "scaleY"]),
+    ("modelLayoutElement", &["visualizedObjectName", "layer"]),
+    ("property", &["name", "value"]),
+    (
+        "pointLayout",
+        &[
+            "positionX",
+            "positionY",
+            "xPosition",
+            "yPosition",
+            "labelOffsetX",
+            "labelOffsetY",
+            "xLabelOffset",
+            "yLabelOffset",
+            "layerId",
+        ],
+    ),
+    ("pathLayout", &["connectionType", "layerId"]),
+    ("controlPoint", &["x", "y"]),
+    (
+        "vehicle",
+        &[
+            "id",
+            "name",
+            "type",
+            "length",
+            "maxVelocity",
+            "maxReverseVelocity",
+            "energyLevelCritical",
+            "energyLevelGood",
+            "energyLevelFullyRecharged",
+            "energyLevelSufficientlyRecharged",
+            "envelopeKey",
+        ],
+    ),
+];
 
 /// Versions whose names and elements are known.
 const VERSIONS: [&str; 7] = ["0.0.1", "0.0.2", "0.0.3", "0.0.4", "0.0.5", "6.0.0", "7.0.0"];
@@ -72,6 +145,11 @@ pub(super) fn read(
     let drawn = VisualProperties::of(visual)?;
     lose_astray(root, &["point", "path", "vehicle"], warnings);
     warn_of_unknown(root, &KNOWN, warnings);
+    warn_of_unknown_attributes(root, &ATTRIBUTES, warnings);
+    for layout in children(root, "visualLayout") {
+        warn_of_unknown(layout, &OF_VISUAL_LAYOUT, warnings);
+        children(layout, "modelLayoutElement").for_each(|element| warn_of_unknown(element, &["property"], warnings));
+    }
     let mut nodes = UniqueNames::new();
     // How far each point is from its place in the visual layout.
     let mut shifts: Vec<Option<f64>> = Vec::new();

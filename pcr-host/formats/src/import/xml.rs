@@ -151,6 +151,25 @@ pub(super) fn warn_of_unknown(home: Node<'_, '_>, known: &[&str], warnings: &mut
     }
 }
 
+/// Says which attributes of these elements are not known, and hence not read. Attributes of other namespaces are none of the format.
+pub(super) fn warn_of_unknown_attributes(home: Node<'_, '_>, known: &[(&str, &[&str])], warnings: &mut Warnings) {
+    for element in home.descendants().filter(Node::is_element) {
+        let own = element.tag_name().name();
+        let Some((_, known)) = known.iter().find(|(name, _)| *name == own) else { continue };
+        for attribute in element.attributes().filter(|attribute| attribute.namespace().is_none()) {
+            let attribute = attribute.name();
+            if !known.contains(&attribute) {
+                let name = element.attribute("name").map_or_else(|| own.to_owned(), |name| format!("{own} {name}"));
+                warnings.add(
+                    WarningCode::UnknownKey,
+                    name,
+                    format!("its attribute {attribute} is not known, and not read"),
+                );
+            }
+        }
+    }
+}
+
 /// The children of an element of this name.
 pub(super) fn children<'a, 'i>(node: Node<'a, 'i>, name: &'static str) -> impl Iterator<Item = Node<'a, 'i>> {
     node.children().filter(move |child| child.has_tag_name(name))
