@@ -4,7 +4,6 @@
 //! traffic     random missions on a layout, and their plan          Traffic
 //! missions    missions of a file, and what became of them        MissionsReport
 //! lifelong    robots that get a new mission after each one         run, Outcome
-//! site_changes  closures and breakdowns in both of these           ClosureEntry
 //! simulate    plans in closed loop, with noise and delays          run, Task
 //! report      their results as JSON, CSV and tables
 //! ```
@@ -13,5 +12,4 @@ pub mod lifelong;
 pub mod missions;
 pub mod report;
 pub mod simulate;
-pub mod site_changes;
 pub mod traffic;

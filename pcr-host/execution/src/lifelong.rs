@@ -22,6 +22,7 @@
 //! route_finder          quickest routes
 //! kinematic_limits      speed and acceleration of a robot
 //! robot                 how robots move and are delayed
+//! robot_mission         what a robot has to do
 //! route                 a path from node to node, and its times without waits
 //! region_table          regions of the routes, and their precedence
 //! timetable             when robots would be where
@@ -42,6 +43,7 @@
 //! world_changes         what is closed, and who is stranded                           ChangeEffect
 //! change_effects        closures and breakdowns that begin and end
 //! change_results        what they did                                                 ChangeResults
+//! site_changes          the same in answers                                            ClosureEntry
 //! own_missions          missions of a file, and what became of them
 //! own_assignment        which vehicle does which of them
 //! own_run               a run of such missions                                        run_missions, MissionRun
@@ -83,6 +85,7 @@ mod region_table;
 mod region_waits;
 mod reservations;
 mod robot;
+mod robot_mission;
 mod route;
 mod route_admission;
 mod route_element;
@@ -91,6 +94,7 @@ mod route_graph;
 mod run;
 mod run_state;
 mod scheduling;
+pub mod site_changes;
 mod starvation;
 mod streets;
 mod task_assignment;

@@ -1,7 +1,7 @@
 //! Missions of one's own: the answer of `pcr traffic --missions`.
 
+use crate::lifelong::site_changes::{self, BreakdownEntry, ClosureEntry};
 use crate::lifelong::{MissionResult, MissionRun, RunCertificate, run_missions};
-use crate::site_changes::{self, BreakdownEntry, ClosureEntry};
 use pcr_formats::import::ImportedLayout;
 use pcr_formats::missions::{FleetMissions, MissionRequest};
 use pcr_formats::scenario::Scenario;

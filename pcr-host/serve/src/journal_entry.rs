@@ -1,8 +1,8 @@
 //! The entries of the journal: everything that must be the same after a restart.
 
+use crate::closed_area::ClosedArea;
 use crate::owned_path::{OwnedPath, PathRounding};
 use crate::robot::{Alarm, MissionFingerprint, PendingMission, RobotNotes, RobotTraits};
-use crate::supervisor::ClosedArea;
 use pcr_core::PassingState;
 use serde::{Deserialize, Serialize};
 use serde_json::Value;

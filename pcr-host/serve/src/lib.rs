@@ -3,6 +3,7 @@
 //!
 //! ```text
 //! owned_path        paths that own their segments                      OwnedPath
+//! closed_area       an area that a person has closed                   ClosedArea
 //! robot             state of a robot                                   RobotTraits
 //! event             messages that it sends without a request
 //! request_error     reasons why it refuses a request                   RequestError
@@ -35,6 +36,7 @@
 
 pub mod bridge_status;
 pub mod clients;
+pub mod closed_area;
 mod connection_limit;
 pub mod event;
 pub mod hello;

@@ -1,6 +1,7 @@
 //! The line protocol: a JSON object on each line, one answer to each request with its `id`, and events for clients that
 //! subscribe. The schema is `docs/reference/schema/pcr-serve.schema.json`.
 
+use crate::closed_area::ClosedArea;
 use crate::event::SupervisorEvent;
 use crate::journal_entry::PageLayout;
 use crate::line_angles;
@@ -9,7 +10,7 @@ use crate::owned_path::StartPose;
 use crate::query::{self, Query};
 use crate::request_error::RequestError;
 use crate::robot::RobotTraits;
-use crate::supervisor::{ClosedArea, MissionRequest, PositionReport, Supervisor};
+use crate::supervisor::{MissionRequest, PositionReport, Supervisor};
 use crate::unanswered_lines::UnansweredLine;
 use pcr_formats::unique_keys::UniqueKeysJson;
 use serde::Deserialize;

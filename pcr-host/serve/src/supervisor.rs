@@ -17,7 +17,7 @@ mod robot_notes;
 
 pub use absence::{StandingPlace, UnplacedVehicle};
 pub use admission::{AdmissionResult, MissionRequest};
-pub use closures::{ClosedArea, ClosureImpact};
+pub use closures::ClosureImpact;
 pub use positions::PositionReport;
 pub use restore::JournalError;
 

@@ -3,14 +3,13 @@
 use crate::lines::{document, fits};
 use crate::world::Disc;
 use pcr_formats::splitmix64::SplitMix64;
+use pcr_serve::closed_area::ClosedArea;
 use pcr_serve::event::SupervisorEvent;
 use pcr_serve::lines::handle;
 use pcr_serve::owned_path::{PathElement, StartPose};
 use pcr_serve::request_error::RequestError;
 use pcr_serve::robot::RobotTraits;
-use pcr_serve::supervisor::{
-    AdmissionResult, ClosedArea, MissionRequest, PositionReport, Supervisor, SupervisorConfig,
-};
+use pcr_serve::supervisor::{AdmissionResult, MissionRequest, PositionReport, Supervisor, SupervisorConfig};
 use serde_json::{Value, json};
 
 const ABILITIES: RobotTraits =

@@ -6,8 +6,9 @@
 
 use super::own_missions::MissionOutcome;
 use super::planning_context::{PlanningContext, TOLLS};
+use super::robot_mission::RobotMission;
 use super::route_admission::AdmittedRoute;
-use super::run_state::{LifelongState, RobotMission};
+use super::run_state::LifelongState;
 use super::scheduling::AGAIN;
 use super::world_changes::{ChangeEffect, ChangeId};
 use pcr_formats::missions::ClosedElement;

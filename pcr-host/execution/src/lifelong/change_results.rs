@@ -1,7 +1,6 @@
 //! What the changes of a site did in a run.
 
-use super::run_state::LifelongState;
-use super::world_changes::{ChangeEffect, ChangeRecord};
+use super::world_changes::{ChangeEffect, ChangeRecord, WorldChanges};
 
 /// What closures and breakdowns did, each in the order of the file.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -40,20 +39,19 @@ pub struct UnreachableGoal {
     pub is_given_up: bool,
 }
 
-impl LifelongState {
+impl WorldChanges {
     /// Returns what the changes of the site did.
-    pub(super) fn changed(&self) -> ChangeResults {
-        let world = &self.world;
+    pub(super) fn results(&self) -> ChangeResults {
         let result = |it: &ChangeRecord| ChangeResult {
             is_begun: it.is_begun,
             effects: it.effects.clone(),
-            place: it.place.map(|(edge, point)| (edge.map(|edge| world.edges[edge].clone()), point)),
+            place: it.place.map(|(edge, point)| (edge.map(|edge| self.edges[edge].clone()), point)),
             unreachable: it
                 .unreachable
                 .iter()
                 .map(|lost| UnreachableGoal {
                     vehicle: lost.robot,
-                    node: world.nodes[lost.node].clone(),
+                    node: self.nodes[lost.node].clone(),
                     at: lost.at,
                     tasks: lost.tasks,
                     is_given_up: lost.is_given_up,
@@ -61,8 +59,8 @@ impl LifelongState {
                 .collect(),
         };
         ChangeResults {
-            closures: world.closures.iter().map(result).collect(),
-            breakdowns: world.breakdowns.iter().map(result).collect(),
+            closures: self.closures.iter().map(result).collect(),
+            breakdowns: self.breakdowns.iter().map(result).collect(),
         }
     }
 }

@@ -76,7 +76,7 @@ fn watched(imported: &ImportedLayout, request: LifelongOptions, changes: &SiteCh
     let mut certificate = RunCertificate::new();
     certificate.window(&run.site, &mut run.robots, &mut window, tick as f64 * STEP);
     assert_eq!(certificate.verdict, "proved", "{certificate:?}");
-    (run.changed(), run.outcome.missions)
+    (run.world.results(), run.outcome.missions)
 }
 
 /// Closures and breakdowns at random, of which every third is for ever.

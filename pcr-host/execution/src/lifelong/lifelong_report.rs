@@ -1,9 +1,9 @@
 //! The answer of `pcr traffic --hours`: runs of one fleet with the same missions and random delays.
 
+use super::site_changes::{self, BreakdownEntry, ClosureEntry};
 use super::{
     CoordinationMethod, DelayModel, LifelongOptions, LifelongResult, MeasuredLifelongRun, WellFormedness, run,
 };
-use crate::site_changes::{self, BreakdownEntry, ClosureEntry};
 use pcr_formats::import::ImportedLayout;
 use pcr_formats::missions::SiteChanges;
 use serde::Serialize;

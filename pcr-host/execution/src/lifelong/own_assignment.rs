@@ -1,8 +1,9 @@
 //! Missions of a file, given to vehicles: which one does which mission, and the stops of each, one after the other.
 
 use super::own_missions::MissionOutcome;
+use super::robot_mission::RobotMission;
 use super::route_graph::DeparturePose;
-use super::run_state::{LifelongState, RobotMission};
+use super::run_state::LifelongState;
 use std::time::Duration;
 
 impl LifelongState {

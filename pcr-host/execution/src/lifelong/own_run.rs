@@ -398,7 +398,7 @@ impl LifelongState {
             edge: it.edge.map(|edge| self.world.edges[edge].clone()),
             point: it.point,
         });
-        let changes = self.changed();
+        let changes = self.world.results();
         let (missions, mut waits): (Vec<_>, Vec<MissionWait>) = (missions.collect(), waits.collect());
         waits.sort_by(|a, b| a.time[0].total_cmp(&b.time[0]).then(a.vehicle.cmp(&b.vehicle)));
         let mut agents = Vec::new();

@@ -4,8 +4,9 @@ use super::motion_record::{CheckWindow, RunCertificate};
 use super::outcome::{LifelongResult, MeasuredLifelongRun, TimeShares};
 use super::random_draws::{STEP, disturb};
 use super::robot::LifelongRobot;
+use super::robot_mission::RobotMission;
 use super::route_graph::RouteGraph;
-use super::run_state::{LifelongState, RobotMission};
+use super::run_state::LifelongState;
 use super::tasks::TaskStream;
 use super::{CoordinationMethod, LifelongOptions};
 use pcr_formats::import::ImportedLayout;
@@ -102,7 +103,7 @@ fn driven(mut run: LifelongState, request: LifelongOptions, told: &dyn Fn(f64)) 
     run.outcome.certificate = certificate;
     Ok(MeasuredLifelongRun {
         outcome: run.finished(),
-        changes: run.changed(),
+        changes: run.world.results(),
         layout: run.layout,
         alone,
         decisions: run.decisions,

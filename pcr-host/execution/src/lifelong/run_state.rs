@@ -13,6 +13,7 @@ use super::random_draws::{self, starts};
 use super::region_table::RegionTable;
 use super::reservations::RouteReservations;
 use super::robot::LifelongRobot;
+use super::robot_mission::RobotMission;
 use super::route::Route;
 use super::route_admission::AdmittedRoute;
 use super::route_finder::RouteFinder;
@@ -24,24 +25,6 @@ use super::{CoordinationMethod, LifelongOptions};
 use pcr_formats::import::ImportedLayout;
 use pcr_formats::missions::SiteChanges;
 use std::time::{Duration, Instant};
-
-/// The mission of a robot.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct RobotMission {
-    pub(super) goal: usize,
-    pub(super) assigned_at: f64,
-    /// The mission of the least rank decides first: by age, or by priority and age.
-    pub(super) rank: f64,
-    /// Time that a robot alone would take \[s\].
-    pub(super) unimpeded_time: f64,
-    /// Whether it has a way.
-    pub(super) admitted: bool,
-    /// Number of newer missions that were admitted while it waited.
-    pub(super) passed: usize,
-    pub(super) next_try: f64,
-    /// Computing time of the quickest way before the first decision.
-    pub(super) prepared: Duration,
-}
 
 pub(super) struct LifelongState {
     pub(super) site: RouteGraph,

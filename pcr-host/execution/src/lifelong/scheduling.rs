@@ -4,7 +4,8 @@
 use super::CoordinationMethod;
 use super::forecast::ForecastInput;
 use super::region_waits::FleetWaits;
-use super::run_state::{LifelongState, RobotMission};
+use super::robot_mission::RobotMission;
+use super::run_state::LifelongState;
 use std::time::Instant;
 
 /// Time between two attempts for the same mission \[s\].

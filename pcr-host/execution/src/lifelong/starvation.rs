@@ -2,8 +2,9 @@
 
 use super::CoordinationMethod;
 use super::planning_context::PlanningContext;
+use super::robot_mission::RobotMission;
 use super::route_admission::AdmittedRoute;
-use super::run_state::{LifelongState, RobotMission};
+use super::run_state::LifelongState;
 use super::scheduling::{AGAIN, TRIES};
 use std::time::{Duration, Instant};
 

@@ -2,8 +2,9 @@
 //! sent for it then gets another one.
 
 use super::planning_context::PlanningContext;
+use super::robot_mission::RobotMission;
 use super::route_graph::DeparturePose;
-use super::run_state::{LifelongState, RobotMission};
+use super::run_state::LifelongState;
 use std::time::Instant;
 
 /// A robot takes a task over from another one if it would be there sooner by this time \[s\].

@@ -1,6 +1,6 @@
 //! Changes of the site during a run: what is closed, which robots are stranded, and what each change did.
 
-use super::run_state::RobotMission;
+use super::robot_mission::RobotMission;
 use pcr_formats::import::Layout;
 use pcr_formats::missions::{ClosedElement, SiteChanges};
 

@@ -1,6 +1,6 @@
 //! What closures and breakdowns did, for reading.
 
-use crate::site_changes::{BreakdownEntry, ClosureEntry, UnreachableEntry};
+use crate::lifelong::site_changes::{BreakdownEntry, ClosureEntry, UnreachableEntry};
 use pcr_planning::report::{counted, printable};
 use std::io::{self, Write};
 

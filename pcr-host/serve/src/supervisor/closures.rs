@@ -6,30 +6,15 @@
 
 use super::Supervisor;
 use super::alarms::{AlarmLimit, LimitCause};
+use crate::closed_area::ClosedArea;
 use crate::journal_entry::JournalEntry;
-use crate::owned_path::{FAR, OwnedPath, PathElement, StartPose};
+use crate::owned_path::{FAR, OwnedPath};
 use crate::request_error::RequestError;
 use crate::robot::{ROOM, SupervisedRobot};
 use pcr_core::{Ecm, Interval};
 use pcr_formats::scenario::label;
 use pcr_planning::fleet::ConvexBody;
-use serde::{Deserialize, Serialize};
-
-/// A closed area: all that is nearer to a path than its radius.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct ClosedArea {
-    /// Its name, which no robot has.
-    #[serde(rename = "closure")]
-    pub name: String,
-    /// Where the path begins.
-    pub start: StartPose,
-    /// Its lines and arcs; none for the disc around the start.
-    #[serde(default)]
-    pub path: Vec<PathElement>,
-    /// \[m\]
-    pub radius: f64,
-}
+use serde::Serialize;
 
 /// What an area that is being closed means to the robots there.
 #[derive(Clone, Debug, Default, PartialEq, Serialize)]

@@ -1,6 +1,7 @@
 //! Closures and breakdowns in the answers of `pcr traffic`: what became of the vehicles on whose routes they were.
 
-use crate::lifelong::{ChangeEffect, ChangeResult, ChangeResults, UnreachableGoal};
+use super::change_results::{ChangeResult, ChangeResults, UnreachableGoal};
+use super::world_changes::ChangeEffect;
 use pcr_formats::import::Layout;
 use pcr_formats::missions::{ClosedElement, SiteChanges};
 use serde::Serialize;
