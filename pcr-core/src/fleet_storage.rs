@@ -48,6 +48,7 @@ use heapless::Vec;
 /// let _ = pcr_core::FleetStorage::<f64, 2, 65536>::new();
 /// ```
 #[derive(Clone, Debug)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct FleetStorage<'o, S: Scalar, const A: usize, const N: usize, const F: usize = 3> {
     agents: Vec<StoredAgent<'o, S, F>, A>,
     /// Those of the agents, one agent after the other, and then those of an agent that is being built.
@@ -58,6 +59,7 @@ pub struct FleetStorage<'o, S: Scalar, const A: usize, const N: usize, const F: 
 
 /// An agent whose segments are stored.
 #[derive(Clone, Debug)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
 struct StoredAgent<'o, S: Scalar, const F: usize> {
     /// Index of its first segment, and their number.
     begin: u16,
@@ -216,6 +218,7 @@ impl<S: Scalar, const F: usize> StoredAgent<'_, S, F> {
 
 /// An agent that is being built in a [`FleetStorage`]: first its path, then its profile, then its body.
 #[derive(Debug)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[must_use = "an agent belongs to the fleet once it has a body and is added"]
 pub struct NewAgent<'f, 'o, S: Scalar, const A: usize, const N: usize, const F: usize> {
     storage: &'f mut FleetStorage<'o, S, A, N, F>,
@@ -379,6 +382,7 @@ impl<S: Scalar, const A: usize, const N: usize, const F: usize> SegmentChain<S> 
 
 /// An agent that is complete, and does not belong to the fleet yet.
 #[derive(Debug)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[must_use = "an agent belongs to the fleet once it is added"]
 pub struct StagedAgent<'f, 'o, S: Scalar, const A: usize, const N: usize, const F: usize> {
     storage: &'f mut FleetStorage<'o, S, A, N, F>,
@@ -426,6 +430,7 @@ impl<'o, S: Scalar, const A: usize, const N: usize, const F: usize> StagedAgent<
 /// The motions of up to `A` agents of a [`FleetStorage`], as the slice that tables and queries take. Motions may be changed in place, for
 /// example to give them a margin.
 #[derive(Clone, Debug)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct FleetMotions<'a, S: Scalar, const A: usize> {
     motions: Vec<Motion<'a, S>, A>,
 }
