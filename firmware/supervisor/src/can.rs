@@ -106,7 +106,7 @@ impl<S: Number> Message<S> {
             Answer::Refused(Refusal::Edition(edition)) => Self::Edition { agent: index(robot)?, edition },
             Answer::Refused(ref refusal) => {
                 // The number of the kind comes first.
-                let mut bytes = [u8::MAX; 32];
+                let mut bytes = [u8::MAX; 64];
                 let why = postcard::to_slice(refusal, &mut bytes).ok().and_then(|bytes| bytes.first().copied());
                 Self::Refused { agent: index(robot)?, why: why.unwrap_or(u8::MAX) }
             }

@@ -241,7 +241,6 @@ fn storage<S: Scalar>() -> Result<(), FleetStorageError> {
         <FleetMotions<'_, S, 2> as Deref>::deref(&fleet).len(),
         <FleetMotions<'_, S, 2> as DerefMut>::deref_mut(&mut fleet).len(),
     ));
-    FleetMotions::clear(&mut fleet);
     any(<FleetMotions<'_, S, 2> as Default>::default());
     drop(fleet);
     FleetStorage::clear(&mut storage);
