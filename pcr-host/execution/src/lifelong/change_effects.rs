@@ -91,8 +91,8 @@ impl LifelongState {
         changes.iter().copied().find(|change| add(change))
     }
 
-    /// Whether a robot cannot do its mission while the present changes last, and since which of them. `None` if none of them keeps it from
-    /// doing it.
+    /// Returns the change because of which a robot cannot reach its goal, together with those before it; `None` if the present changes leave it
+    /// a route.
     fn obstacle(&self, robot: usize, goal: usize) -> Option<ChangeId> {
         let goal = [goal % self.site.places()];
         let lasting = self.world.lasting();
