@@ -4,7 +4,7 @@ mod common;
 
 use common::{Random, between};
 use mapf::negotiation::{Agent, Scenario, negotiate};
-use pcr_rmf_mapf::{Dependencies, Error, Footprint, TimedPose, Trajectory};
+use pcr_rmf_mapf::{Dependencies, Dependency, Error, Footprint, TimedPose, Trajectory};
 use std::collections::{BTreeMap, HashMap};
 use std::f64::consts::{FRAC_PI_2, PI};
 
@@ -223,6 +223,20 @@ fn a_round_needs_waypoints_in_between() {
     let fine: Vec<Trajectory> = round.iter().map(|robot| robot.divided(0.05).0).collect();
     let dependencies = Dependencies::of(&fine).unwrap();
     execute(&fine, &dependencies, &mut Random(3), 0.001, |poses| stay_apart(poses, 0.6 - 1e-6));
+}
+
+/// In the same step one robot passes in the first half of it and one in the second half; or they pass in different steps, and at different
+/// times after the beginnings of these.
+#[test]
+fn two_plans_whose_dependencies_are_easily_missed() {
+    let first = disc(0.3, &[(0.0, -1.0, 0.0), (1.0, 3.0, 0.0), (2.0, 3.0, 0.0)]);
+    for (waypoint, second) in [
+        (1, [(0.0, 0.0, -3.0), (1.0, 0.0, 1.0), (2.0, 0.0, 1.0)]),
+        (2, [(0.0, 0.0, -3.0), (1.0, 0.0, -3.0), (2.0, 0.0, 1.0)]),
+    ] {
+        let found: Vec<_> = Dependencies::of(&[first.clone(), disc(0.3, &second)]).unwrap().iter().collect();
+        assert_eq!(found, [Dependency { agent: 1, waypoint, waits_for: 0, reached: 1 }]);
+    }
 }
 
 #[test]
