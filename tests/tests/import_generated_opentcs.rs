@@ -1,57 +1,15 @@
 //! Plant models of openTCS that were changed on purpose, as in `import_generated`: an attribute or element left out, misspelt, renamed, added or
 //! in another element, in every version. A small reader that shares nothing with the importer says what each one means.
 
-use crate::import_generated::{Meaning, Point, Way, is_same, misspelt, options, points};
+use crate::import_generated::{Meaning, Point, Way, options, points};
+use crate::import_generated_xml::{Element, Format, Tally, change};
 use pcr_formats::import::{InputFormat, Warnings, layout};
 use std::collections::BTreeMap;
 
-/// An element of XML without text.
-#[derive(Clone, Debug)]
-struct Element {
-    name: String,
-    attributes: Vec<(String, String)>,
-    children: Vec<Element>,
-}
-
-impl Element {
-    fn new(name: &str, attributes: &[(&str, &str)], children: Vec<Self>) -> Self {
-        let attributes = attributes.iter().map(|(name, value)| ((*name).to_owned(), (*value).to_owned())).collect();
-        Self { name: name.to_owned(), attributes, children }
-    }
-
-    fn get(&self, name: &str) -> Option<&str> {
-        self.attributes.iter().find(|(own, _)| own == name).map(|(_, value)| value.as_str())
-    }
-
-    /// The first of two names that an attribute has in one version or another \[m\].
-    fn metres(&self, names: &[&str]) -> Option<f64> {
-        let text = names.iter().find_map(|name| self.get(name))?;
-        Some(text.parse::<f64>().ok()? / 1000.0)
-    }
-
-    fn all(&self, name: &str) -> impl Iterator<Item = &Self> {
-        self.children.iter().filter(move |child| child.name == name)
-    }
-
-    fn text(&self) -> String {
-        let attributes: String = self.attributes.iter().map(|(name, value)| format!(" {name}=\"{value}\"")).collect();
-        let children: String = self.children.iter().map(Self::text).collect();
-        let Self { name, .. } = self;
-        format!("<{name}{attributes}>{children}</{name}>")
-    }
-
-    /// The element at a place: the index of a child of the root, of a child of that, and so on.
-    fn at(&mut self, place: &[usize]) -> &mut Self {
-        place.iter().fold(self, |element, &child| &mut element.children[child])
-    }
-
-    /// Places of all elements.
-    fn places(&self) -> Vec<Vec<usize>> {
-        let below = self.children.iter().enumerate().flat_map(|(k, child)| {
-            child.places().into_iter().map(move |place| std::iter::once(k).chain(place).collect())
-        });
-        std::iter::once(Vec::new()).chain(below).collect()
-    }
+/// The first of two names that an attribute has in one version or another \[m\].
+fn metres(element: &Element, names: &[&str]) -> Option<f64> {
+    let text = names.iter().find_map(|name| element.get(name))?;
+    Some(text.parse::<f64>().ok()? / 1000.0)
 }
 
 /// What a model says; `None` if it does not say what it has to.
@@ -66,12 +24,12 @@ fn meaning(model: &Element) -> Option<Meaning> {
     };
     let mut places = BTreeMap::<&str, Point>::new();
     for point in model.all("point") {
-        let at = [point.metres(&["positionX", "xPosition"])?, point.metres(&["positionY", "yPosition"])?];
+        let at = [metres(point, &["positionX", "xPosition"])?, metres(point, &["positionY", "yPosition"])?];
         places.insert(point.get("name")?, at);
     }
     let unit = |key: &str| match model.all("visualLayout").next() {
         None => Some(0.05),
-        Some(layout) => layout.metres(&[key]),
+        Some(layout) => metres(layout, &[key]),
     };
     let mut ways = Meaning::new();
     for path in model.all("path") {
@@ -102,7 +60,7 @@ fn meaning(model: &Element) -> Option<Meaning> {
             ("BEZIER", 4) => (0..=200).map(|k| bezier(&corners, f64::from(k) / 200.0)).collect(),
             _ => return None,
         };
-        let speed = |key: &str| path.metres(&[key]);
+        let speed = |key: &str| metres(path, &[key]);
         let locked = if path.get("locked") == Some("true") { ", locked" } else { "" };
         let back: Vec<Point> = corners.iter().rev().copied().collect();
         if let Some(speed) = speed("maxReverseVelocity").filter(|speed| *speed > 0.0) {
@@ -188,95 +146,11 @@ fn model(version: &str) -> Element {
     Element::new("model", &[("name", "m"), ("version", version)], children)
 }
 
-#[derive(Default)]
-struct Tally {
-    same: usize,
-    told: usize,
-    refused: usize,
-    wrong: Vec<String>,
-}
-
-impl Tally {
-    /// What a change makes of a model: it is refused, or means the same as before, or it means what the reader says, and a warning has one
-    /// of these words. Without words no warning is needed: what is not there says nothing.
-    fn judge(&mut self, what: &str, model: &Element, before: &Meaning, words: &[&str]) {
-        let Ok((ways, warnings)) = imported(model) else {
-            self.refused += 1;
-            return;
-        };
-        let is_told = words.is_empty() || warnings.iter().any(|line| words.iter().any(|word| line.contains(word)));
-        let expected = meaning(model);
-        if is_same(&ways, before) {
-            self.same += 1;
-        } else {
-            let agrees = expected.as_ref().is_none_or(|expected| is_same(&ways, expected));
-            if !is_told || !agrees {
-                self.wrong.push(format!("{what}: told {is_told}, as it stands {agrees}: {warnings:?}"));
-            }
-            self.told += 1;
-        }
-    }
-}
-
-fn change(version: &str, tally: &mut Tally) {
-    let base = model(version);
-    let meant = meaning(&base).expect("the model says what it has to");
-    let (own, warnings) = imported(&base).unwrap();
-    assert!(is_same(&own, &meant), "{version}: {warnings:?}\n{own:?}\n{meant:?}");
-    for place in base.places() {
-        let element = base.clone().at(&place).clone();
-        let changed = |change: &dyn Fn(&mut Element)| {
-            let mut model = base.clone();
-            change(model.at(&place));
-            model
-        };
-        for (k, (attribute, value)) in element.attributes.iter().enumerate() {
-            let what = |change: &str| format!("{version}, {} {place:?}, {attribute}: {change}", element.name);
-            tally.judge(&what("left out"), &changed(&|it| drop(it.attributes.remove(k))), &meant, &[]);
-            for new in misspelt(attribute).into_iter().chain(["zzzzzz".to_owned()]) {
-                if element.get(&new).is_some() {
-                    continue;
-                }
-                let model = changed(&|it| it.attributes[k].0.clone_from(&new));
-                tally.judge(&what(&new), &model, &meant, &[attribute, &new]);
-            }
-            // In the element around it.
-            if let Some((_, around)) = place.split_last() {
-                let mut model = changed(&|it| drop(it.attributes.remove(k)));
-                let parent = model.at(around);
-                if parent.get(attribute).is_none() {
-                    parent.attributes.push((attribute.clone(), value.clone()));
-                    tally.judge(&what("moved"), &model, &meant, &[attribute]);
-                }
-            }
-        }
-        // An unknown attribute, or element, changes nothing.
-        let model = changed(&|it| it.attributes.push(("zzzzzz".to_owned(), "1".to_owned())));
-        assert!(is_same(&imported(&model).unwrap().0, &meant), "{version}, {place:?}");
-        let model = changed(&|it| it.children.push(Element::new("zzzzzz", &[("x", "1.0")], Vec::new())));
-        if let Ok((ways, _)) = imported(&model) {
-            assert!(is_same(&ways, &meant), "{version}, {place:?}");
-        }
-        let Some((&last, around)) = place.split_last() else { continue };
-        let what = |change: &str| format!("{version}, {} {place:?}: {change}", element.name);
-        for new in misspelt(&element.name).into_iter().chain(["zzzzzz".to_owned()]) {
-            let model = changed(&|it| it.name.clone_from(&new));
-            tally.judge(&what(&new), &model, &meant, &[&element.name, &new]);
-        }
-        // In the root, if it was below something else; below the first point, if it was in the root.
-        let mut model = base.clone();
-        let moved = model.at(around).children.remove(last);
-        let to = if around.is_empty() { &mut model.children[usize::from(last == 0)] } else { &mut model };
-        to.children.push(moved);
-        tally.judge(&what("moved"), &model, &meant, &[&element.name]);
-    }
-}
-
 #[test]
 fn what_was_changed_is_read_as_it_stands_or_refused_or_told() {
     let mut tally = Tally::default();
     for version in ["0.0.2", "0.0.3", "0.0.4", "0.0.5", "6.0.0", "7.0.0"] {
-        change(version, &mut tally);
+        change(&Format { meaning, imported }, version, &model(version), &mut tally);
     }
     let Tally { same, told, refused, wrong } = tally;
     assert!(wrong.is_empty(), "{} wrong: {wrong:#?}", wrong.len());

@@ -24,9 +24,21 @@ const GAP: f64 = 1e-6;
 const LATE: f64 = 1e-3;
 const ROUNDED: f64 = 1e-4;
 
-/// GraphML leaves other attributes to its users.
-const GRAPH: Keys = Keys::new(&["id", "edgedefault"], &[]).free();
-const EDGE: Keys = Keys::new(&["id", "source", "target", "directed"], &[]).free();
+/// Those of `parse` tell how a file is written.
+const GRAPH: Keys = Keys::new(
+    &["id", "edgedefault"],
+    &[
+        "parse.nodeids",
+        "parse.edgeids",
+        "parse.order",
+        "parse.nodes",
+        "parse.edges",
+        "parse.maxindegree",
+        "parse.maxoutdegree",
+    ],
+);
+const NODE: Keys = Keys::new(&["id"], &["parse.indegree", "parse.outdegree"]);
+const EDGE: Keys = Keys::new(&["id", "source", "target", "directed"], &["sourceport", "targetport"]);
 
 /// Reads a roadmap: nodes with `x,y` as their first datum.
 pub(super) fn roadmap(text: &str, warnings: &mut Warnings) -> Result<Layout, ImportError> {
@@ -61,6 +73,10 @@ pub(super) fn roadmap(text: &str, warnings: &mut Warnings) -> Result<Layout, Imp
             warnings.lose(format_args!("node at place {}: it has no id", k + 1));
             continue;
         };
+        if let Err(error) = NODE.check_attributes(node, &format!("node {id}"), warnings) {
+            warnings.lose(error);
+            continue;
+        }
         let datum = child(node, "data").map(content).unwrap_or_default();
         let at = datum.split_once(',').and_then(|(x, y)| {
             let number = |text: &str| text.trim().parse::<f64>().ok().filter(|x| x.abs() <= crate::scenario::LIMIT);

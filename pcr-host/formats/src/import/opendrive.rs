@@ -40,6 +40,25 @@ const ADDED: [&str; 2] = ["userData", "dataQuality"];
 /// What is read of a file, or known to have no reference line.
 const KNOWN: [&str; 8] = ["header", "road", "controller", "junction", "junctionGroup", "station", ADDED[0], ADDED[1]];
 
+/// The same of a road, of its link and of a part of it that has a type.
+const OF_ROAD: [&str; 13] = [
+    "link",
+    "type",
+    "planView",
+    "elevationProfile",
+    "lateralProfile",
+    "lanes",
+    "objects",
+    "signals",
+    "surface",
+    "railroad",
+    "include",
+    ADDED[0],
+    ADDED[1],
+];
+const OF_LINK: [&str; 5] = ["predecessor", "successor", "neighbor", ADDED[0], ADDED[1]];
+const OF_TYPE: [&str; 3] = ["speed", ADDED[0], ADDED[1]];
+
 /// Largest radius of an arc \[m\]; beyond it a line stands for it, and how far it leaves that counts as deviation.
 const STRAIGHT: f64 = 1e9;
 
@@ -53,9 +72,25 @@ fn windings(shape: &PathSegment) -> f64 {
     }
 }
 
-/// Files have attributes of others, too.
-const ROAD: Keys = Keys::new(&["id", "length"], &[]).free();
-const SPEED: Keys = Keys::new(&["max", "unit"], &[]).free();
+const ROAD: Keys = Keys::new(&["id", "length"], &["name", "junction", "rule"]);
+const SPEED: Keys = Keys::new(&["max", "unit"], &[]);
+/// Of a part of a road that has a type.
+const TYPE: Keys = Keys::new(&["s", "type"], &["country"]).not(&["max", "unit"]);
+const GEOMETRY: Keys = Keys::new(&["s", "x", "y", "hdg", "length"], &[]);
+/// Of the end of a road: the road or junction that follows there.
+const LINKED: Keys = Keys::new(&["elementType", "elementId", "contactPoint"], &["elementS", "elementDir"]);
+
+/// The attributes of the shapes that are read.
+fn shape_keys(shape: &str) -> Option<Keys> {
+    Some(match shape {
+        "line" => Keys::new(&[], &[]),
+        "arc" => Keys::new(&["curvature"], &[]),
+        "spiral" => Keys::new(&["curvStart", "curvEnd"], &[]),
+        "paramPoly3" => Keys::new(&["aU", "bU", "cU", "dU", "aV", "bV", "cV", "dV", "pRange"], &[]),
+        "poly3" => Keys::new(&["a", "b", "c", "d"], &[]),
+        _ => return None,
+    })
+}
 
 /// The reference line of a road.
 struct ReferenceLine {
@@ -100,7 +135,8 @@ pub(super) fn read(text: &str, options: &ImportOptions, warnings: &mut Warnings)
         let name = format!("road {id}");
         let read = |warnings: &mut Warnings| -> Result<_, ImportError> {
             ROAD.check_attributes(road, &name, warnings)?;
-            Ok((curve(road, &name, options.tolerance())?, speed(road, &name, warnings)?, only(road, "link")?))
+            warn_of_unknown(road, &OF_ROAD, warnings);
+            Ok((curve(road, &name, options.tolerance(), warnings)?, speed(road, &name, warnings)?, only(road, "link")?))
         };
         match read(warnings) {
             Err(error) => warnings.lose(error),
@@ -230,7 +266,12 @@ impl GeometryRecord<'_> {
 }
 
 /// The lines and arcs of a road, and its widest joint.
-fn curve(road: roxmltree::Node<'_, '_>, name: &str, tolerance: f64) -> Result<ReferenceLine, ImportError> {
+fn curve(
+    road: roxmltree::Node<'_, '_>,
+    name: &str,
+    tolerance: f64,
+    warnings: &mut Warnings,
+) -> Result<ReferenceLine, ImportError> {
     let mut curve: Vec<PlacedSegment> = Vec::new();
     let (mut joint, mut deviation, mut turned) = ([0.0_f64; 2], 0.0_f64, 0.0_f64);
     let mut along = 0.0_f64;
@@ -243,6 +284,7 @@ fn curve(road: roxmltree::Node<'_, '_>, name: &str, tolerance: f64) -> Result<Re
             return Err(ImportError::new(format!("{name}, planView: {} is not read", record.tag_name().name())));
         }
         let name = format!("{name}, geometry {}", k + 1);
+        GEOMETRY.check_attributes(record, &name, warnings)?;
         let field = |attribute: &str| number(record, &name, attribute);
         let (at, heading, length) = ([field("x")?, field("y")?], field("hdg")?, field("length")?);
         // A gap between two records, or at the end, would leave the geometry unknown.
@@ -259,6 +301,9 @@ fn curve(road: roxmltree::Node<'_, '_>, name: &str, tolerance: f64) -> Result<Re
             return Err(ImportError::new(format!("{name}: a second shape, {}", second.tag_name().name())));
         }
         let element = element.ok_or_else(|| ImportError::new(format!("{name}: it has no shape")))?;
+        let shape = element.tag_name().name();
+        let keys = shape_keys(shape).ok_or_else(|| ImportError::new(format!("{name}: {shape} is not read")))?;
+        keys.check_attributes(element, &format!("{name}, {shape}"), warnings)?;
         if !(0.0..=LIMIT).contains(&length) || heading.abs() > 1e6 {
             return Err(ImportError::new(format!("{name}: its length, heading or sweep is out of range")));
         }
@@ -332,6 +377,10 @@ fn close(curve: &mut Vec<PlacedSegment>) -> [f64; 3] {
 /// The speed limit of a road, the least one where it changes on the way \[m/s\].
 fn speed(road: roxmltree::Node<'_, '_>, name: &str, warnings: &mut Warnings) -> Result<Option<f64>, ImportError> {
     let mut limits = Vec::new();
+    for part in children(road, "type") {
+        TYPE.check_attributes(part, &format!("{name}, type"), warnings)?;
+        warn_of_unknown(part, &OF_TYPE, warnings);
+    }
     for limit in children(road, "type").flat_map(|part| children(part, "speed")) {
         SPEED.check_attributes(limit, &format!("{name}, speed"), warnings)?;
         let unit = match limit.attribute("unit") {
@@ -377,6 +426,8 @@ enum LinkError {
     ElementType,
     /// It does not say which end of the road.
     NoContactPoint,
+    /// One of its attributes may be meant for another one.
+    Attribute(ImportError),
 }
 
 impl fmt::Display for LinkError {
@@ -385,6 +436,7 @@ impl fmt::Display for LinkError {
             Self::Road(error) => error.fmt(f),
             Self::ElementType => f.write_str("its elementType is not road and not junction"),
             Self::NoContactPoint => f.write_str("it has no contactPoint"),
+            Self::Attribute(error) => error.fmt(f),
         }
     }
 }
@@ -406,12 +458,15 @@ fn groups(
     }
     for (place, link) in links.iter().enumerate() {
         let Some(link) = link else { continue };
+        warn_of_unknown(*link, &OF_LINK, warnings);
         for (side, name) in ["predecessor", "successor"].into_iter().enumerate() {
             let Some(linked) = child(*link, name) else { continue };
-            let other = match linked.attribute("elementType") {
+            let other = LINKED.check_attributes(linked, "link", warnings).map_err(LinkError::Attribute);
+            let other = match (other, linked.attribute("elementType")) {
+                (Err(error), _) => Err(error),
                 // Junctions are roads that are linked to the roads that they join.
-                Some("junction") => continue,
-                Some("road") => {
+                (_, Some("junction")) => continue,
+                (_, Some("road")) => {
                     let other = roads.index_of(&named(linked.attribute("elementId").unwrap_or_default()));
                     other.map_err(LinkError::Road)
                 }
