@@ -38,11 +38,7 @@ pub fn pieces<S: Scalar>(
 ) -> Result<(), CapacityError> {
     let mut pieces = PieceStore::new([Piece::EMPTY; 16]);
     SegmentPair { first, second, indices: [0; 2], radius, slack }.find(&mut pieces)?;
-    let mut index = pieces.first_pending();
-    while let Some(piece) = pieces.get_mut(index) {
-        found([piece.first, piece.second]);
-        index = piece.next;
-    }
+    pieces.behind(0).iter().for_each(|piece| found([piece.first, piece.second]));
     Ok(())
 }
 

@@ -52,7 +52,7 @@ impl<'a, S: Scalar> AgentPair<'a, S> {
         self.slack.double()
     }
 
-    /// Adds the pieces of the pair to the pending list and joins those that are connected. Lengths are along the paths.
+    /// Adds the pieces of the pair, pending, and forms regions of those that are connected. Lengths are along the paths.
     /// The caller has checked that the boxes of both paths meet ([`Motion::swept`]).
     ///
     /// Cost: a box test for each pair of segments, and a few hundred operations for each pair of segments that meet.
@@ -87,7 +87,7 @@ impl<'a, S: Scalar> AgentPair<'a, S> {
             }
         }
         self.join(pieces);
-        self.place(pieces);
+        pieces.form_regions(|piece| self.place(piece));
         Ok(())
     }
 
@@ -97,18 +97,18 @@ impl<'a, S: Scalar> AgentPair<'a, S> {
     /// follow at once, and those across a joint of the second path begin at an index that never goes back.
     fn join<P: AsRef<[Piece<S>]> + AsMut<[Piece<S>]>>(&self, pieces: &mut PieceStore<S, P>) {
         let place = |piece: &Piece<S>| (u32::from(piece.second_segment) << 16) | u32::from(piece.first_segment);
-        let mut a = pieces.first_pending();
-        let mut next_row = a;
-        while let Some(&before) = pieces.get(a) {
+        let last = pieces.pending();
+        let mut next_row = 1;
+        for a in 1..last {
+            let Some(&before) = pieces.get(a) else { break };
             // A path has at most 2^16 - 1 segments, so the first index does not reach the second.
             let (beside, above) = (place(&before).saturating_add(1), place(&before).saturating_add(1 << 16));
-            while let Some(piece) = pieces.get(next_row)
-                && place(piece) < above
-            {
-                next_row = piece.next;
+            while next_row <= last && pieces.get(next_row).is_some_and(|piece| place(piece) < above) {
+                next_row = next_row.wrapping_add(1);
             }
-            let mut b = before.next;
-            while let Some(&after) = pieces.get(b)
+            let mut b = a.wrapping_add(1);
+            while b <= last
+                && let Some(&after) = pieces.get(b)
                 && place(&after) <= above
             {
                 let at = place(&after);
@@ -117,9 +117,9 @@ impl<'a, S: Scalar> AgentPair<'a, S> {
                 {
                     pieces.join(a, b);
                 }
-                b = if beside < at && at < above { next_row } else { after.next };
+                // A pair has less than 2^16 pieces.
+                b = if beside < at && at < above { next_row } else { b.wrapping_add(1) };
             }
-            a = before.next;
         }
     }
 
@@ -188,16 +188,13 @@ impl<'a, S: Scalar> AgentPair<'a, S> {
     }
 
     /// Converts lengths along segments into lengths along paths.
-    fn place<P: AsRef<[Piece<S>]> + AsMut<[Piece<S>]>>(&self, pieces: &mut PieceStore<S, P>) {
-        let mut index = pieces.first_pending();
-        while let Some(piece) = pieces.get_mut(index) {
-            if let Some(own) = segment(self.first, piece.first_segment) {
-                piece.first = along_path(piece.first, own);
-            }
-            if let Some(other) = segment(self.second, piece.second_segment) {
-                piece.second = along_path(piece.second, other);
-            }
-            index = piece.next;
+    fn place(&self, piece: &mut Piece<S>) {
+        let (own, other) = self.segments(piece);
+        if let Some(own) = own {
+            piece.first = along_path(piece.first, own);
+        }
+        if let Some(other) = other {
+            piece.second = along_path(piece.second, other);
         }
     }
 

@@ -1,10 +1,10 @@
 //! Storage of region pieces with a fixed capacity. A piece is the part of a region that belongs to one pair of
 //! segments.
 //!
-//! The pieces of a region are a linked list inside the storage, so a region of any number of pieces can be added or
-//! removed without moving others. While a pair of agents is computed, its pieces are in one *pending* list, in which
-//! pieces that are joined have the same group. At the end the list is split into regions; if the storage is full, the
-//! whole list is freed.
+//! The slots in use are the first ones. While a pair of agents is computed, its pieces are *pending*: the last ones, and
+//! numbered from 1. Those that are joined are in one tree of a union-find forest. At the end the pieces of each tree
+//! become a region, which is a linked list inside the storage. When regions are removed, pieces from the end take the
+//! slots of theirs.
 
 use crate::error::CapacityError;
 use crate::geometry::Interval;
@@ -22,11 +22,14 @@ const fn slot(index: u32) -> usize {
     index.wrapping_sub(1) as usize
 }
 
-/// Bit in the group of a piece that says that other pieces have the same group.
-const JOINED: u16 = 1 << 15;
+/// The number of no pending piece.
+pub(crate) const NO_NUMBER: u16 = 0;
 
-/// Largest number of groups of a pair.
-const GROUPS: u16 = JOINED - 1;
+/// Bit in the parent of a pending piece that says that a region begins with it. The rest is the number of the last piece of the region so far.
+const FIRST: u16 = 1 << 15;
+
+/// Largest number of pieces of a pair.
+const MOST_PENDING: u16 = (1 << 15) - 1;
 
 /// A piece: the part of a collision region that belongs to one pair of segments and has one closed form.
 ///
@@ -42,7 +45,8 @@ pub struct Piece<S> {
     /// Which of the intervals of a slice of the first segment belongs to the piece. For two discs, the lap of the first segment, which connects
     /// neighbouring slabs, and the share; for outlines, k and n of the k-th of n intervals.
     rank: [u8; 2],
-    group: u16,
+    /// Of a pending piece, the number of one of the same region that is not behind it: itself at the root of a tree.
+    parent: u16,
     pub(crate) next: u32,
 }
 
@@ -57,7 +61,7 @@ impl<S: Scalar> Piece<S> {
         first_segment: 0,
         second_segment: 0,
         rank: [0; 2],
-        group: 0,
+        parent: 0,
         next: NONE,
     };
 
@@ -74,7 +78,7 @@ impl<S: Scalar> Piece<S> {
     /// The piece of two outlines that is the k-th of n intervals, counted from 0.
     pub(crate) fn ranked(segments: [u16; 2], rank: [u8; 2], first: Interval<S>, second: Interval<S>) -> Self {
         let [first_segment, second_segment] = segments;
-        Self { first, second, first_segment, second_segment, rank, group: 0, next: NONE }
+        Self { first, second, first_segment, second_segment, rank, parent: 0, next: NONE }
     }
 
     /// Lap of the first segment of a piece of two discs.
@@ -115,41 +119,27 @@ impl<S: Scalar> Default for Piece<S> {
     }
 }
 
-/// The storage: slots of the caller; slots in use are in lists, free ones in a list of their own.
+/// The storage, in slots of the caller.
 #[derive(Clone, Debug)]
 pub(crate) struct PieceStore<S, P> {
     slots: P,
-    /// Number of slots that were ever used; they are the first ones.
-    fresh: u32,
-    /// Head of the list of freed slots.
-    free: u32,
     /// Number of slots in use.
     used: u32,
-    pending: PendingPieces,
+    /// Number of pieces that are not pending.
+    settled: u32,
+    /// Number of the first piece of the region that was taken last.
+    taken: u16,
     scalar: PhantomData<S>,
-}
-
-/// The list of the pair that is being computed.
-#[derive(Clone, Copy, Debug)]
-struct PendingPieces {
-    first: u32,
-    last: u32,
-    /// Number of groups used so far.
-    groups: u16,
-}
-
-impl PendingPieces {
-    const NOTHING: Self = Self { first: NONE, last: NONE, groups: 0 };
 }
 
 impl<S, P> PieceStore<S, P> {
     pub(crate) const fn new(slots: P) -> Self {
-        Self { slots, fresh: 0, free: NONE, used: 0, pending: PendingPieces::NOTHING, scalar: PhantomData }
+        Self { slots, used: 0, settled: 0, taken: NO_NUMBER, scalar: PhantomData }
     }
 
     /// Frees all pieces.
     pub(crate) fn clear(&mut self) {
-        (self.fresh, self.free, self.used, self.pending) = (0, NONE, 0, PendingPieces::NOTHING);
+        (self.used, self.settled, self.taken) = (0, 0, NO_NUMBER);
     }
 
     /// The container of the slots; more slots may be added at its end.
@@ -163,19 +153,29 @@ impl<S, P> PieceStore<S, P> {
         self.used as usize
     }
 
-    /// The first pending piece, or [`NONE`].
-    pub(crate) const fn first_pending(&self) -> u32 {
-        self.pending.first
+    /// Number of pending pieces, and so the number of the last one.
+    pub(crate) const fn pending(&self) -> u16 {
+        self.used.wrapping_sub(self.settled) as u16
     }
 
-    /// Whether the groups of this pair are used up.
+    /// Whether this pair has as many pieces as a pair can have.
     pub(crate) const fn pair_is_full(&self) -> bool {
-        self.pending.groups == GROUPS
+        self.pending() == MOST_PENDING
     }
 
-    /// The last pending piece, or [`NONE`].
-    pub(crate) const fn last_pending(&self) -> u32 {
-        self.pending.last
+    /// Index of the pending piece with this number.
+    const fn index(&self, number: u16) -> u32 {
+        self.settled.wrapping_add(number as u32)
+    }
+
+    /// Frees all pending pieces.
+    pub(crate) fn take_back(&mut self) {
+        self.used = self.settled;
+    }
+
+    /// Ends the pair: its pieces are no longer pending.
+    pub(crate) fn settle(&mut self) {
+        (self.settled, self.taken) = (self.used, NO_NUMBER);
     }
 }
 
@@ -185,137 +185,162 @@ impl<S, P: AsRef<[Piece<S>]>> PieceStore<S, P> {
         self.slots.as_ref()
     }
 
-    /// The piece at this index.
-    pub(crate) fn get(&self, index: u32) -> Option<&Piece<S>> {
-        self.slots().get(slot(index))
+    /// The pending piece with this number.
+    pub(crate) fn get(&self, number: u16) -> Option<&Piece<S>> {
+        self.slots().get(slot(self.index(number)))
     }
 
-    /// The pending piece after this one; the first one for [`NONE`].
-    pub(crate) fn pending_after(&self, index: u32) -> u32 {
-        self.get(index).map_or(self.pending.first, |piece| piece.next)
+    /// Makes the next region of those that [`PieceStore::form_regions`] has formed a list, and returns its first piece. After the last one, no
+    /// piece is pending. O(pieces of the pair), for all its regions together.
+    pub(crate) fn take_region(&mut self) -> Option<u32> {
+        while self.taken < self.pending() {
+            self.taken = self.taken.wrapping_add(1);
+            if self.get(self.taken).is_some_and(|piece| piece.parent & FIRST != 0) {
+                return Some(self.index(self.taken));
+            }
+        }
+        self.settle();
+        None
     }
 }
 
 impl<S: Scalar, P: AsMut<[Piece<S>]>> PieceStore<S, P> {
     /// Stores the same pieces as another storage, at the same indices; this one is unchanged if they do not fit.
     pub(crate) fn copy_from<O: AsRef<[Piece<S>]>>(&mut self, other: &PieceStore<S, O>) -> Result<(), CapacityError> {
-        let (room, used) = (self.slots.as_mut().iter_mut(), other.slots().iter().take(other.fresh as usize));
+        let (room, used) = (self.slots.as_mut().iter_mut(), other.slots().iter().take(other.len()));
         if room.len() < used.len() {
             return Err(CapacityError::Pieces { needed: used.len(), capacity: room.len() });
         }
         room.zip(used).for_each(|(slot, piece)| *slot = *piece);
-        (self.fresh, self.free, self.used, self.pending) = (other.fresh, other.free, other.used, other.pending);
+        (self.used, self.settled, self.taken) = (other.used, other.settled, other.taken);
         Ok(())
     }
 
-    /// Adds a piece to the pending list, with a group of its own.
-    pub(crate) fn push(&mut self, piece: Piece<S>) -> Result<u32, CapacityError> {
-        let PendingPieces { first, last, groups } = self.pending;
-        let index = if self.free == NONE { self.fresh.wrapping_add(1) } else { self.free };
-        let (needed, slots) = (self.len().saturating_add(1), self.slots.as_mut());
+    /// Adds a pending piece, as a region of its own, and returns its number.
+    pub(crate) fn push(&mut self, piece: Piece<S>) -> Result<u16, CapacityError> {
+        let (needed, is_full, slots) = (self.len().saturating_add(1), self.pair_is_full(), self.slots.as_mut());
         let full = CapacityError::Pieces { needed, capacity: slots.len() };
-        if groups == GROUPS {
-            return Err(full);
-        }
-        let groups = groups.wrapping_add(1);
-        let place = slots.get_mut(slot(index)).ok_or(full)?;
-        if self.free == NONE {
-            self.fresh = index;
-        } else {
-            self.free = place.next;
-        }
-        *place = Piece { group: groups, next: NONE, ..piece };
-        if let Some(last) = slots.get_mut(slot(last)) {
-            last.next = index;
-        }
-        // A slot with this index exists, so this does not saturate.
-        self.used = self.used.saturating_add(1);
-        self.pending = PendingPieces { first: if first == NONE { index } else { first }, last: index, groups };
-        Ok(index)
+        let place = slots.get_mut(self.used as usize).filter(|_| !is_full).ok_or(full)?;
+        // A slot with this index exists, and a pair has less than 2^16 pieces.
+        self.used = self.used.wrapping_add(1);
+        let number = self.used.wrapping_sub(self.settled) as u16;
+        *place = Piece { parent: number, next: NONE, ..piece };
+        Ok(number)
     }
 
-    /// The pending piece at an index returned by [`PieceStore::push`].
-    pub(crate) fn get_mut(&mut self, index: u32) -> Option<&mut Piece<S>> {
-        self.slots.as_mut().get_mut(slot(index))
+    /// The pending piece with this number.
+    pub(crate) fn get_mut(&mut self, number: u16) -> Option<&mut Piece<S>> {
+        let index = self.index(number);
+        self.slots.as_mut().get_mut(slot(index)).filter(|_| number != NO_NUMBER)
     }
 
-    /// Puts two pending pieces, and all pieces that were joined with them, into one region. [`NONE`] is ignored. O(1)
-    /// if one of them has not been joined yet, otherwise O(pending pieces).
-    pub(crate) fn join(&mut self, a: u32, b: u32) {
-        let slots = self.slots.as_mut();
-        let group = |index: u32| slots.get(slot(index)).map(|piece| piece.group);
-        let (Some(kept), Some(gone)) = (group(a), group(b)) else {
-            return;
-        };
-        if kept == gone {
-            return;
+    /// The pending pieces behind the one with this number.
+    pub(crate) fn behind(&mut self, number: u16) -> &mut [Piece<S>] {
+        let (first, used) = (self.index(number) as usize, self.len());
+        self.slots.as_mut().get_mut(first..used).unwrap_or_default()
+    }
+
+    /// Puts two pending pieces, and all pieces that were joined with them, into one region. [`NO_NUMBER`] is ignored.
+    /// O(log pending pieces), averaged over all that are joined.
+    pub(crate) fn join(&mut self, a: u16, b: u16) {
+        if a != NO_NUMBER && b != NO_NUMBER {
+            let (a, b) = (self.root(a), self.root(b));
+            self.set_parent(a.max(b), a.min(b));
         }
-        if kept & gone & JOINED == 0 {
-            let group = JOINED | if gone & JOINED == 0 { kept } else { gone };
-            for index in [a, b] {
-                if let Some(piece) = slots.get_mut(slot(index)) {
-                    piece.group = group;
+    }
+
+    fn parent(&mut self, number: u16) -> u16 {
+        self.get_mut(number).map_or(number, |piece| piece.parent)
+    }
+
+    fn set_parent(&mut self, number: u16, parent: u16) {
+        if let Some(piece) = self.get_mut(number) {
+            piece.parent = parent;
+        }
+    }
+
+    /// The number of the first of all pieces that a pending piece was joined with. Every step halves the way to it for later ones.
+    fn root(&mut self, mut number: u16) -> u16 {
+        loop {
+            let parent = self.parent(number);
+            if parent == number {
+                return number;
+            }
+            let before = self.parent(parent);
+            self.set_parent(number, before);
+            number = before;
+        }
+    }
+
+    /// Makes a list of the pieces of each region, in their order, and calls `each` with every piece. Afterwards no piece may be added or
+    /// joined. O(pending pieces).
+    pub(crate) fn form_regions(&mut self, mut each: impl FnMut(&mut Piece<S>)) {
+        let settled = self.settled;
+        let pending = self.behind(NO_NUMBER);
+        for place in 0..pending.len() {
+            let number = (place as u16).wrapping_add(1);
+            let Some(piece) = pending.get_mut(place) else { break };
+            each(piece);
+            let parent = core::mem::replace(&mut piece.parent, FIRST | number);
+            if parent == number {
+                continue;
+            }
+            // Of the pieces before this one, each that is not the first of its region has that one as its parent.
+            let Some(before) = pending.get(slot(parent.into())) else { break };
+            let first = if before.parent & FIRST == 0 { before.parent } else { parent };
+            if let Some(piece) = pending.get_mut(place) {
+                piece.parent = first;
+            }
+            let Some(first) = pending.get_mut(slot(first.into())) else { break };
+            let last = core::mem::replace(&mut first.parent, FIRST | number) & !FIRST;
+            if let Some(last) = pending.get_mut(slot(last.into())) {
+                last.next = settled.wrapping_add(number.into());
+            }
+        }
+    }
+
+    /// Frees all pieces but those of these lists, and moves the latter to the first slots: `head` tells the first piece of a list.
+    /// O(pieces).
+    pub(crate) fn keep<L>(&mut self, lists: &mut [L], head: impl Fn(&mut L) -> &mut u32) {
+        let (used, slots) = (self.len(), self.slots.as_mut());
+        // The parent of a settled piece says whether it is kept.
+        slots.iter_mut().take(used).for_each(|piece| piece.parent = 0);
+        let mut kept = 0_u32;
+        for list in &mut *lists {
+            let mut index = *head(list);
+            while let Some(piece) = slots.get_mut(slot(index)) {
+                (piece.parent, index) = (1, piece.next);
+                // A slot with this index exists.
+                kept = kept.wrapping_add(1);
+            }
+        }
+        let mut free = NONE;
+        // The index of a piece that is at `index` now.
+        let mut moved = |slots: &mut [Piece<S>], index: u32| {
+            let Some(&piece) = slots.get(slot(index)).filter(|_| index > kept) else { return index };
+            // There are as many free slots as pieces behind the last slot that is kept.
+            loop {
+                free = free.wrapping_add(1);
+                match slots.get_mut(slot(free)) {
+                    Some(place) if place.parent == 0 => *place = piece,
+                    Some(_) => continue,
+                    None => {}
                 }
+                return free;
             }
-            return;
-        }
-        let mut index = self.pending.first;
-        while let Some(piece) = slots.get_mut(slot(index)) {
-            if piece.group == gone {
-                piece.group = kept;
-            }
-            index = piece.next;
-        }
-    }
-
-    /// Moves the first pending piece, and those that were joined with it, from the pending list to a list of their own.
-    /// O(1) if there are none, otherwise O(pending pieces).
-    pub(crate) fn take_region(&mut self) -> Option<u32> {
-        let slots = self.slots.as_mut();
-        let head = self.pending.first;
-        let group = slots.get(slot(head))?.group;
-        let (mut taken, mut rest) = (NONE, NONE);
-        let (mut index, mut rest_head) = (head, NONE);
-        while let Some(piece) = slots.get_mut(slot(index)) {
-            let (member, next) = (piece.group == group, piece.next);
-            piece.next = NONE;
-            let tail = if member { &mut taken } else { &mut rest };
-            let before = core::mem::replace(tail, index);
-            match slots.get_mut(slot(before)) {
-                Some(before) => before.next = index,
-                None if !member => rest_head = index,
-                None => {}
-            }
-            index = next;
-            // A piece that was never joined is a region of its own; the rest of the list is unchanged.
-            if group & JOINED == 0 {
-                (rest_head, rest) = (next, self.pending.last);
-                break;
+        };
+        for list in lists {
+            let mut index = moved(slots, *head(list));
+            *head(list) = index;
+            while let Some(next) = slots.get(slot(index)).map(|piece| piece.next) {
+                let next = moved(slots, next);
+                if let Some(piece) = slots.get_mut(slot(index)) {
+                    piece.next = next;
+                }
+                index = next;
             }
         }
-        self.pending = PendingPieces { first: rest_head, last: rest, ..self.pending };
-        if rest_head == NONE {
-            self.pending = PendingPieces::NOTHING;
-        }
-        Some(head)
-    }
-
-    /// Frees the pieces of a list.
-    pub(crate) fn release(&mut self, head: u32) {
-        let mut index = head;
-        while let Some(piece) = self.slots.as_mut().get_mut(slot(index)) {
-            let next = core::mem::replace(&mut piece.next, self.free);
-            self.free = index;
-            self.used = self.used.saturating_sub(1);
-            index = next;
-        }
-    }
-
-    /// Frees all pending pieces.
-    pub(crate) fn take_back(&mut self) {
-        let head = self.pending.first;
-        self.pending = PendingPieces::NOTHING;
-        self.release(head);
+        (self.used, self.settled) = (kept, kept);
     }
 }
 
@@ -383,10 +408,11 @@ mod tests {
     #[test]
     fn joined_pieces_become_one_region_in_their_order() {
         let mut pieces = PieceStore::new([Piece::EMPTY; 6]);
-        let index: heapless::Vec<u32, 6> = (0..6).map(|k| pieces.push(piece(k)).unwrap()).collect();
-        pieces.join(index[4], index[1]);
-        pieces.join(index[3], index[5]);
-        pieces.join(index[5], index[4]);
+        let numbers: heapless::Vec<u16, 6> = (0..6).map(|k| pieces.push(piece(k)).unwrap()).collect();
+        pieces.join(numbers[4], numbers[1]);
+        pieces.join(numbers[3], numbers[5]);
+        pieces.join(numbers[5], numbers[4]);
+        pieces.form_regions(|_| {});
         let regions = [(); 3].map(|()| pieces.take_region().unwrap());
         assert_eq!(pieces.take_region(), None);
         assert_eq!(members(&pieces, regions[0])[..], [0]);
@@ -394,49 +420,112 @@ mod tests {
         assert_eq!(members(&pieces, regions[2])[..], [2]);
     }
 
+    /// Numbers below `below`, from a linear congruential generator.
+    fn random(state: &mut u32, below: usize) -> usize {
+        *state = state.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
+        (*state >> 16) as usize % below
+    }
+
     #[test]
     fn whatever_is_joined_in_whatever_order_is_one_region() {
-        let mut state = 1_u32;
-        let mut random = || {
-            state = state.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
-            (state >> 16) % 24
-        };
+        let mut state = 1;
         for joins in 0..400 {
             let mut pieces = PieceStore::new([Piece::EMPTY; 24]);
-            (0..24).for_each(|k| assert_eq!(pieces.push(piece(k)), Ok(u32::from(k) + 1)));
-            let mut groups: [u32; 24] = core::array::from_fn(|k| k as u32);
+            (0..24).for_each(|k| assert_eq!(pieces.push(piece(k)), Ok(k + 1)));
+            let mut groups: [usize; 24] = core::array::from_fn(|k| k);
             for _ in 0..joins % 40 {
-                let (a, b) = (random(), random());
-                pieces.join(a + 1, b + 1);
-                let [kept, gone] = [a, b].map(|index| groups[index as usize]);
+                let pair = [(); 2].map(|()| random(&mut state, 24));
+                pieces.join(pair[0] as u16 + 1, pair[1] as u16 + 1);
+                let [kept, gone] = pair.map(|k| groups[k]);
                 groups.iter_mut().filter(|group| **group == gone).for_each(|group| *group = kept);
             }
-            while let Some(head) = pieces.take_region() {
+            pieces.form_regions(|_| {});
+            for first in 0..24 {
                 let all: heapless::Vec<u16, 24> =
-                    (0..24).filter(|&k| groups[usize::from(k)] == groups[slot(head)]).collect();
-                assert_eq!(members(&pieces, head), all);
-                all.iter().for_each(|&k| groups[usize::from(k)] = 24 + u32::from(k));
+                    (0..24).filter(|&k| groups[usize::from(k)] == groups[usize::from(first)]).collect();
+                if all[0] == first {
+                    let head = pieces.take_region().unwrap();
+                    assert_eq!(members(&pieces, head), all);
+                }
             }
-            assert!(groups.iter().all(|&group| group >= 24));
+            assert_eq!((pieces.take_region(), pieces.pending()), (None, 0));
+        }
+    }
+
+    /// Adds a region of the pieces with these numbers.
+    fn add<const N: usize>(pieces: &mut PieceStore<f32, [Piece<f32>; N]>, all: core::ops::Range<u16>) -> u32 {
+        for k in all {
+            let number = pieces.push(piece(k)).unwrap();
+            pieces.join(1, number);
+        }
+        pieces.form_regions(|_| {});
+        let head = pieces.take_region().unwrap();
+        assert_eq!(pieces.take_region(), None);
+        head
+    }
+
+    #[test]
+    fn what_is_kept_stays_as_it_is_and_takes_the_first_slots() {
+        let mut state = 1;
+        for _ in 0..400 {
+            let mut pieces = PieceStore::new([Piece::EMPTY; 40]);
+            let mut lists = heapless::Vec::<(core::ops::Range<u16>, u32), 40>::new();
+            for round in 0..8 {
+                while let begin = 100 * round + pieces.len() as u16
+                    && let count @ 1.. = random(&mut state, 7)
+                    && pieces.len() + count <= 40
+                {
+                    let all = begin..begin + count as u16;
+                    let head = add(&mut pieces, all.clone());
+                    lists.push((all, head)).unwrap();
+                }
+                lists.retain(|_| random(&mut state, 3) > 0);
+                // Tables are not in the order of their slots.
+                lists.sort_unstable_by_key(|(all, _)| all.start % 7);
+                pieces.keep(&mut lists, |(_, head)| head);
+                assert_eq!(pieces.len(), lists.iter().map(|(all, _)| all.len()).sum());
+                for (all, head) in &lists {
+                    assert!(members(&pieces, *head).into_iter().eq(all.clone()));
+                }
+            }
         }
     }
 
     #[test]
-    fn a_full_store_refuses_and_what_is_released_is_used_again() {
+    fn a_full_store_refuses_and_what_is_freed_is_used_again() {
         let mut pieces = PieceStore::new([Piece::EMPTY; 3]);
-        for k in 0..2 {
-            pieces.push(piece(k)).unwrap();
-        }
-        let (first, second) = (pieces.take_region().unwrap(), pieces.take_region().unwrap());
+        let (first, _) = (add(&mut pieces, 0..1), add(&mut pieces, 1..2));
         pieces.push(piece(7)).unwrap();
         assert_eq!(pieces.push(piece(8)), Err(CapacityError::Pieces { needed: 4, capacity: 3 }));
         pieces.take_back();
         assert_eq!((&members(&pieces, first)[..], pieces.len()), (&[0][..], 2));
-        pieces.release(second);
+        pieces.keep(&mut [first], |head| head);
         for k in 10..12 {
             pieces.push(piece(k)).unwrap();
         }
         assert_eq!(pieces.push(piece(12)), Err(CapacityError::Pieces { needed: 4, capacity: 3 }));
         assert_eq!(members(&pieces, first)[..], [0]);
+    }
+
+    #[test]
+    #[cfg(feature = "std")]
+    fn a_pair_has_at_most_32767_pieces_whatever_there_is_room_for() {
+        let mut pieces = PieceStore::new(std::vec![Piece::EMPTY; 100_000]);
+        for round in 1..=2 {
+            for k in 0..32767 {
+                let number = pieces.push(piece(k)).unwrap();
+                // Three regions that take turns.
+                pieces.join(number.saturating_sub(3), number);
+            }
+            assert!(pieces.pair_is_full());
+            assert!(pieces.push(piece(0)).is_err());
+            pieces.form_regions(|_| {});
+            for k in 0..3 {
+                let head = pieces.take_region().unwrap();
+                let all = PieceList::new(pieces.slots(), head).map(|piece| piece.first_segment);
+                assert!(all.eq((k..32767).step_by(3)));
+            }
+            assert_eq!((pieces.take_region(), pieces.len()), (None, round * 32767));
+        }
     }
 }

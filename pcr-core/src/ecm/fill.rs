@@ -6,7 +6,7 @@ use crate::bit_rows::{self, SetBits};
 use crate::error::CapacityError;
 use crate::motion::Motion;
 use crate::pair::AgentPair;
-use crate::piece_store::{NONE, Piece};
+use crate::piece_store::Piece;
 use crate::scalar::Scalar;
 use crate::segment::ROW;
 use core::cell::Cell;
@@ -70,7 +70,7 @@ where
         Ok(())
     }
 
-    /// The pieces of a pair, in the pending list; none if there is no room.
+    /// The pieces of a pair, pending; none if there is no room.
     fn find_pair(&mut self, agents: [usize; 2], pair: AgentPair<'_, S>) -> Result<(), CapacityError> {
         pair.find(&mut self.pieces).map_err(|full| {
             let no_storage_helps = self.pieces.pair_is_full();
@@ -98,7 +98,7 @@ where
     /// If there is no room, some regions of the pair may remain: the caller then removes one of the agents, or all.
     fn add_pair(&mut self, agents: [usize; 2], pair: AgentPair<'_, S>) -> Result<(), CapacityError> {
         self.find_pair(agents, pair)?;
-        if self.pieces.first_pending() == NONE {
+        if self.pieces.pending() == 0 {
             return Ok(());
         }
         // While a table is built from scratch, new entries belong at its end.
@@ -107,8 +107,7 @@ where
         let mut index = if at_end { entries.len() } else { entries.partition_point(|region| region.agents() < agents) };
         while let Some(head) = self.pieces.take_region() {
             if let Err(full) = self.insert_entry(index, agents, head) {
-                self.pieces.release(head);
-                self.pieces.take_back();
+                self.pieces.settle();
                 return Err(full);
             }
             // An entry with this index exists, so this does not saturate.
@@ -147,9 +146,7 @@ where
             let Some(&region) = regions.get(index) else {
                 break;
             };
-            if region.agents().contains(&agent) {
-                self.pieces.release(region.head);
-            } else {
+            if !region.agents().contains(&agent) {
                 if let Some(place) = regions.get_mut(kept) {
                     *place = region;
                 }
@@ -158,5 +155,6 @@ where
             }
         }
         self.len = kept;
+        self.pieces.keep(self.regions.as_mut().get_mut(..kept).unwrap_or_default(), |region| &mut region.head);
     }
 }

@@ -55,13 +55,13 @@ impl<S: Scalar> SegmentPair<'_, S> {
         add_turning_lengths(self.first, self.second, ends, self.radius, self.slack, &mut turning);
         events.sort();
         let in_order = events.as_slice();
-        let begin = pieces.last_pending();
+        let begin = pieces.pending();
         if wraps(self.first, self.radius, self.slack) {
             self.find_laps(in_order, pieces)?;
         } else {
             self.find_one_lap(in_order, pieces)?;
         }
-        if pieces.last_pending() == begin {
+        if pieces.pending() == begin {
             return Ok(());
         }
         for &l in turning.as_slice() {
@@ -151,7 +151,7 @@ impl<S: Scalar> SegmentPair<'_, S> {
     /// The foot alone is not enough. Near the centre of an arc its error is ϱ / |ϱ - R| times a few slacks, and two
     /// turning points on either side of a gap may coincide because of rounding, with a foot in the gap. The distance is
     /// accurate whatever the foot, and over a range it is least at the foot or at an end.
-    fn turn_back<P: AsRef<[Piece<S>]> + AsMut<[Piece<S>]>>(&self, pieces: &mut PieceStore<S, P>, begin: u32, l: S) {
+    fn turn_back<P: AsRef<[Piece<S>]> + AsMut<[Piece<S>]>>(&self, pieces: &mut PieceStore<S, P>, begin: u16, l: S) {
         let point = self.first.point_at(l);
         let footprint = CarrierCoordinates::of(point, self.second);
         if footprint.offset.abs() > self.radius + self.slack {
@@ -161,8 +161,7 @@ impl<S: Scalar> SegmentPair<'_, S> {
         let by_laps = wraps(self.first, self.radius, self.slack);
         let s = on_first_lap(footprint.foot(self.second), self.second, S::ZERO);
         let near = |s| (self.second.point_at(s) - point).norm_squared() <= reach.times(reach);
-        let mut index = pieces.pending_after(begin);
-        while let Some(piece) = pieces.get_mut(index) {
+        for piece in pieces.behind(begin) {
             let Interval { lo, hi } = piece.second;
             let place = if piece.second.contains(s) { Some(s) } else { [lo, hi].into_iter().find(|&end| near(end)) };
             let belongs = place.is_some_and(|s| {
@@ -180,7 +179,6 @@ impl<S: Scalar> SegmentPair<'_, S> {
             if belongs {
                 piece.first = piece.first.hull(Interval::new(l, l));
             }
-            index = piece.next;
         }
     }
 }

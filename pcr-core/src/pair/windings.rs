@@ -9,7 +9,7 @@ use super::slabs::SegmentPair;
 use crate::error::CapacityError;
 use crate::geometry::Interval;
 use crate::lap::{Branch, Winding, shift};
-use crate::piece_store::{NONE, Piece, PieceStore};
+use crate::piece_store::{NO_NUMBER, Piece, PieceStore};
 use crate::scalar::Scalar;
 use crate::segment::Segment;
 
@@ -29,8 +29,8 @@ struct SlabState<S> {
     foot: S,
 }
 
-/// The piece that is open in each lap, indexed by [`Winding`], or [`NONE`].
-type OpenBits = [u32; Winding::ALL.len()];
+/// The number of the piece that is open in each lap, indexed by [`Winding`].
+type OpenBits = [u16; Winding::ALL.len()];
 
 impl<S: Scalar> SegmentPair<'_, S> {
     /// Adds the pieces of the slabs and joins those that are connected.
@@ -39,7 +39,7 @@ impl<S: Scalar> SegmentPair<'_, S> {
         in_order: &[S],
         pieces: &mut PieceStore<S, P>,
     ) -> Result<(), CapacityError> {
-        let mut open = [NONE; Winding::ALL.len()];
+        let mut open = [NO_NUMBER; Winding::ALL.len()];
         let mut before = SlabState { covered: false, foot: S::ZERO };
         let slabs = in_order.iter().zip(in_order.iter().skip(1)).map(|(&lo, &hi)| Interval::new(lo, hi));
         for range in slabs.filter(|&slab| self.is_slab(slab)) {
@@ -52,7 +52,7 @@ impl<S: Scalar> SegmentPair<'_, S> {
                     let laps_lost = self.laps_lost(before, slab, &edge);
                     self.extend(pieces, range, &middle, &edge, &mut open, laps_lost)?;
                 } else {
-                    open = [NONE; Winding::ALL.len()];
+                    open = [NO_NUMBER; Winding::ALL.len()];
                 }
             }
             before = slab;
@@ -91,7 +91,7 @@ impl<S: Scalar> SegmentPair<'_, S> {
         open: &mut OpenBits,
         laps_lost: i8,
     ) -> Result<(), CapacityError> {
-        let before = core::mem::replace(open, [NONE; Winding::ALL.len()]);
+        let before = core::mem::replace(open, [NO_NUMBER; Winding::ALL.len()]);
         let several = middle.reach.intervals(self.first)[1].is_some();
         let mut share = if several { Branch::Start } else { Branch::Only };
         for lap in Winding::ALL {
@@ -99,20 +99,20 @@ impl<S: Scalar> SegmentPair<'_, S> {
                 continue;
             };
             let covered = covered.hull(self.limit(begin, middle.foot(self.first), lap));
-            let ongoing = lap.less(laps_lost).map_or(NONE, |lap| before[lap as usize]);
-            let index = match pieces.get_mut(ongoing) {
+            let ongoing = lap.less(laps_lost).map_or(NO_NUMBER, |lap| before[lap as usize]);
+            let number = match pieces.get_mut(ongoing) {
                 Some(piece) if piece.lap() == lap && piece.share() == share => {
                     piece.first = piece.first.hull(covered);
                     piece.second.hi = range.hi;
                     ongoing
                 }
                 _ => {
-                    let index = pieces.push(Piece::new(self.indices, lap, share, covered, range))?;
-                    pieces.join(ongoing, index);
-                    index
+                    let number = pieces.push(Piece::new(self.indices, lap, share, covered, range))?;
+                    pieces.join(ongoing, number);
+                    number
                 }
             };
-            open[lap as usize] = index;
+            open[lap as usize] = number;
             if several {
                 share = Branch::End;
             }

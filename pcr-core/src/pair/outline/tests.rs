@@ -76,12 +76,7 @@ fn a_rectangle_that_turns_beside_a_wall_has_pinches() {
     }
     let mut pieces = PieceStore::new([Piece::EMPTY; 16]);
     carriers.find([0; 2], &mut pieces).unwrap();
-    let mut found = Vec::new();
-    let mut index = pieces.first_pending();
-    while let Some(piece) = pieces.get_mut(index) {
-        found.push((piece.rank(), piece.second));
-        index = piece.next;
-    }
+    let found: Vec<_> = pieces.behind(0).iter().map(|piece| (piece.rank(), piece.second)).collect();
     let expected = [
         ([0, 4], 0.628889744907202, 0.75),
         ([1, 4], 0.628889744907202, 0.75),
@@ -100,6 +95,7 @@ fn a_rectangle_that_turns_beside_a_wall_has_pinches() {
             "{found:?}"
         );
     }
+    pieces.form_regions(|_| {});
     let all = pieces.take_region().unwrap();
     assert_eq!(crate::piece_store::PieceList::new(pieces.slots(), all).count(), 7, "one region");
 }

@@ -17,16 +17,16 @@ use super::events::{Carriers, Events};
 use super::slice::{MOST_PARTS, Parts, parts, parts_beside};
 use crate::error::CapacityError;
 use crate::geometry::Interval;
-use crate::piece_store::{NONE, Piece, PieceStore};
+use crate::piece_store::{NO_NUMBER, Piece, PieceStore};
 use crate::scalar::Scalar;
 
 /// Largest number of halvings of a gap between two slices of different structure: enough for the digits of any format.
 pub(crate) const HALVINGS: u32 = 64;
 
-/// A slice, and the pieces of its intervals.
+/// A slice, and the numbers of the pieces of its intervals.
 struct Front<S> {
     parts: Parts<S>,
-    pieces: [u32; MOST_PARTS],
+    pieces: [u16; MOST_PARTS],
 }
 
 impl<S: Scalar> Carriers<'_, S> {
@@ -47,7 +47,7 @@ impl<S: Scalar> Carriers<'_, S> {
         let events = self.events().ok_or(CapacityError::Contacts)?;
         let mut turning = None;
         let beside = self.second.within(self.slack.half().half());
-        let mut front = Front { parts: Parts::new(Interval::new(S::ZERO, S::ZERO)), pieces: [NONE; MOST_PARTS] };
+        let mut front = Front { parts: Parts::new(Interval::new(S::ZERO, S::ZERO)), pieces: [NO_NUMBER; MOST_PARTS] };
         let events = events.as_slice();
         let slabs = events.iter().zip(events.iter().skip(1)).map(|(&lo, &hi)| Interval::new(lo, hi));
         for slab in slabs.filter(|slab| slab.lo < slab.hi || self.second.segment.length == S::ZERO) {
@@ -148,7 +148,7 @@ impl<S: Scalar> Carriers<'_, S> {
         indices: [u16; 2],
         pieces: &mut PieceStore<S, P>,
     ) -> Result<Front<S>, CapacityError> {
-        let mut front = Front { parts: slice, pieces: [NONE; MOST_PARTS] };
+        let mut front = Front { parts: slice, pieces: [NO_NUMBER; MOST_PARTS] };
         let (old, new) = (before.parts.as_slice(), slice.as_slice());
         for (k, &part) in new.iter().enumerate() {
             let goes_on = old.len() == new.len() && old.get(k).is_some_and(|old| old.meets(part));
