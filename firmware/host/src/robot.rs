@@ -116,7 +116,8 @@ struct Here<S: Rounded> {
 
 impl<S: Rounded> Here<S> {
     fn new(supervisor: &mut Supervisor<S>, edition: Edition) -> Result<Self, Box<dyn Error>> {
-        let (mut told, mut robot) = (Box::new(Briefing::new(OWN)), Box::new(Robot::new()));
+        let (mut told, mut robot) = (Box::new(Briefing::new()), Box::new(Robot::new()));
+        told.begin(OWN);
         let (mut client, zero) = (Client::robot(OWN), S::from_f64(0.0));
         let mut clear = Ok(());
         let last = ask(supervisor, &mut client, &Request::Orders { agent: OWN }, |answer| {

@@ -126,14 +126,14 @@ pub struct Receiver {
     bytes: Vec<u8, MAX_PLAIN>,
     /// Bytes until the next encoded zero; if it is 0, this byte is one.
     run: u8,
-    damage: Option<Damage>,
+    too_long: bool,
     started: bool,
 }
 
 impl Receiver {
     /// A receiver that has received nothing.
     pub const fn new(reads: Reads) -> Self {
-        Self { reads, bytes: Vec::new(), run: 0, damage: None, started: false }
+        Self { reads, bytes: Vec::new(), run: 0, too_long: false, started: false }
     }
 
     /// Processes a byte. At the end of a frame it returns the frame, or why it is damaged.
@@ -163,14 +163,14 @@ impl Receiver {
 
     fn store(&mut self, byte: u8) {
         if self.bytes.push(byte).is_err() {
-            self.damage = Some(Damage::TooLong);
+            self.too_long = true;
         }
     }
 
     /// The frame, if it is of the kind that is read.
     fn frame<T: for<'de> Deserialize<'de>>(&self) -> Result<Option<Frame<T>>, Damage> {
-        if let Some(damage) = self.damage {
-            return Err(damage);
+        if self.too_long {
+            return Err(Damage::TooLong);
         }
         if self.run > 0 {
             return Err(Damage::Stuffing);

@@ -3,7 +3,7 @@
 //!
 //! ```text
 //! loop {
-//!     briefing.clear();                                  // Request::Orders, answer by answer
+//!     briefing.begin(own);                               // Request::Orders, answer by answer
 //!     briefing.take(&answer)?;
 //!     fleet.fill(briefing.paths())?;
 //!     robot.brief(&briefing, &fleet, at)?;
@@ -33,7 +33,8 @@ use pcr_core::{
 /// in total, and at most `R` regions that it has with the others.
 #[derive(Debug)]
 pub struct Briefing<S: Number, const A: usize, const N: usize, const R: usize> {
-    agent: u16,
+    /// The robot.
+    agent: Option<u16>,
     /// Edition of the answers received so far.
     edition: Option<Edition>,
     /// From the last answer: the number of the edition in which the robot got its path, and what is known of its place.
@@ -51,15 +52,28 @@ struct Passing<S> {
     from: S,
 }
 
+impl<S: Number, const A: usize, const N: usize, const R: usize> Default for Briefing<S, A, N, R> {
+    fn default() -> Self {
+        Self::new()
+    }
+}
+
 impl<S: Number, const A: usize, const N: usize, const R: usize> Briefing<S, A, N, R> {
-    /// An empty briefing for the robot with this index.
-    pub const fn new(agent: u16) -> Self {
-        Self { agent, edition: None, path: None, members: Vec::new(), paths: FleetStorage::new(), passings: Vec::new() }
+    /// An empty briefing for no robot; see [`Briefing::begin`]. It is all zeros, so a `static` takes no flash for it.
+    pub const fn new() -> Self {
+        Self {
+            agent: None,
+            edition: None,
+            path: None,
+            members: Vec::new(),
+            paths: FleetStorage::new(),
+            passings: Vec::new(),
+        }
     }
 
-    /// Removes everything.
-    pub fn clear(&mut self) {
-        (self.edition, self.path) = (None, None);
+    /// Removes everything, and begins a briefing for the robot with this index.
+    pub fn begin(&mut self, agent: u16) {
+        (self.agent, self.edition, self.path) = (Some(agent), None, None);
         self.members.clear();
         self.paths.clear();
         self.passings.clear();
@@ -70,7 +84,7 @@ impl<S: Number, const A: usize, const N: usize, const R: usize> Briefing<S, A, N
     ///
     /// # Errors
     /// [`Unclear`] if an answer does not fit, has an invalid path, or belongs to another edition than those before it,
-    /// because orders have changed meanwhile. Then clear the briefing and ask again.
+    /// because orders have changed meanwhile. Then begin the briefing anew and ask again.
     pub fn take(&mut self, answer: &Answer<S>) -> Result<(), Unclear> {
         match *answer {
             Answer::Member { agent, edition, ref with } => {
@@ -83,7 +97,7 @@ impl<S: Number, const A: usize, const N: usize, const R: usize> Briefing<S, A, N
                 let passing = Passing { other, pass, from };
                 self.passings.push(passing).map_err(|_| InvalidInput::Full("order"))?;
             }
-            Answer::Orders { agent, edition, path, at } if agent == self.agent => {
+            Answer::Orders { agent, edition, path, at } if self.agent == Some(agent) => {
                 self.is_of(edition)?;
                 self.path = Some((path, at));
             }
@@ -225,7 +239,9 @@ impl<S: Number, const A: usize, const R: usize, const P: usize> Robot<S, A, R, P
         }
         // 0 on a path that was not begun.
         let at = Scalar::min(Scalar::max(S::ZERO, at), known.hi);
-        self.own = briefing.place_of(briefing.agent).ok_or(MismatchError::NoSuchAgent(usize::from(briefing.agent)))?;
+        // A briefing that was not begun is of no edition either.
+        let agent = briefing.agent.ok_or(Unclear::Disagreement)?;
+        self.own = briefing.place_of(agent).ok_or(MismatchError::NoSuchAgent(agent.into()))?;
         self.orders.fill_row(fleet, self.own)?;
         let mut told = briefing.passings.iter();
         for place in 0..self.orders.ecm().len() {
@@ -264,7 +280,7 @@ impl<S: Number, const A: usize, const R: usize, const P: usize> Robot<S, A, R, P
                 }
             }
             Answer::Go { agent, edition, to }
-                if edition == self.edition && agent == briefing.agent && to > self.sent =>
+                if edition == self.edition && Some(agent) == briefing.agent && to > self.sent =>
             {
                 self.sent = to;
             }

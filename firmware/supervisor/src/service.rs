@@ -41,7 +41,8 @@ pub struct Service<S: Number, const A: usize, const N: usize, const R: usize, co
     /// Limits of the agents, which are sent with their paths.
     limits: Vec<Limits<S>, A>,
     table: T,
-    built_in: &'static [Agent<S, &'static [Step<S>]>],
+    /// `None` if there is none, because a reference to nothing is not zero.
+    built_in: Option<&'static [Agent<S, &'static [Step<S>]>]>,
 }
 
 impl<S: Number, const A: usize, const N: usize, const R: usize, const P: usize> Service<S, A, N, R, P> {
@@ -52,10 +53,12 @@ impl<S: Number, const A: usize, const N: usize, const R: usize, const P: usize> 
 }
 
 impl<S: Number, T, const A: usize, const N: usize, const R: usize, const P: usize> Service<S, A, N, R, P, T> {
-    /// A supervisor without agents, with a fleet that can be loaded and this table.
+    /// A supervisor without agents, with a fleet that can be loaded and this table. Without such a fleet and with an empty table it is all zeros,
+    /// so a `static` takes no flash for it; [`Service::build_in`] gives it the fleet when the program starts.
     pub const fn with(table: T, built_in: &'static [Agent<S, &'static [Step<S>]>]) -> Self {
         // A row has at most this many records, and each record has an index of 16 bits.
         const { assert!(R + P + A < u16::MAX as usize, "places are sent in 16 bits") };
+        let built_in = if built_in.is_empty() { None } else { Some(built_in) };
         Self { fleet: FleetStorage::new(), limits: Vec::new(), table, built_in }
     }
 }
@@ -65,6 +68,11 @@ where
     S: Number,
     T: Table<S, R, P>,
 {
+    /// Puts a fleet in the place of the one that can be loaded.
+    pub fn build_in(&mut self, fleet: &'static [Agent<S, &'static [Step<S>]>]) {
+        self.built_in = Some(fleet);
+    }
+
     // The functions that it calls are not inlined, so that their stacks do not add up.
     /// Answers a request: calls [`Replies::send`] for each answer. `next` is the sequence number for the answer to a
     /// greeting.
@@ -135,7 +143,7 @@ where
     #[inline(never)]
     fn load(&mut self, replies: &mut impl Replies<S>) -> Result<Answer<S>, Refusal> {
         self.clear();
-        let built_in = self.built_in;
+        let built_in = self.built_in.unwrap_or_default();
         let loaded = built_in.iter().try_for_each(|agent| {
             replies.pause();
             self.add(agent).map(drop)

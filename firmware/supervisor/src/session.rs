@@ -13,6 +13,7 @@ use crate::message::{Answer, Refusal, Request};
 use crate::number::Number;
 use crate::service::{self, Regions, Service};
 use crate::table::Table;
+use heapless::Vec;
 
 /// The sequence number after this one.
 pub const fn after(sequence: u16) -> u16 {
@@ -42,7 +43,8 @@ impl<F: FnMut(&[u8])> Line for F {
 pub struct Session<S: Number, const A: usize, const N: usize, const R: usize, const P: usize, T = Regions<S, R, P>> {
     service: Service<S, A, N, R, P, T>,
     receiver: Receiver,
-    last: Option<Last<S>>,
+    /// A list, because an `Option` without a value would not be all zeros.
+    last: Vec<Last<S>, 1>,
 }
 
 /// The request that was executed last.
@@ -65,7 +67,7 @@ impl<S: Number, const A: usize, const N: usize, const R: usize, const P: usize> 
 impl<S: Number, T, const A: usize, const N: usize, const R: usize, const P: usize> Session<S, A, N, R, P, T> {
     /// A session for this service.
     pub const fn of(service: Service<S, A, N, R, P, T>) -> Self {
-        Self { service, receiver: Receiver::new(Reads::Requests), last: None }
+        Self { service, receiver: Receiver::new(Reads::Requests), last: Vec::new() }
     }
 }
 
@@ -74,6 +76,11 @@ where
     S: Number,
     T: Table<S, R, P>,
 {
+    /// Puts a fleet in the place of the one that can be loaded.
+    pub fn build_in(&mut self, fleet: &'static [Agent<S, &'static [Step<S>]>]) {
+        self.service.build_in(fleet);
+    }
+
     /// Processes a byte from the line: calls [`Line::send`] for each frame to be sent.
     pub fn take(&mut self, byte: u8, line: &mut impl Line) {
         let Some(received) = self.receiver.take::<Request<S>>(byte) else { return };
@@ -98,12 +105,12 @@ where
 
     /// Sequence number of the planner's next request.
     fn next(&self) -> u16 {
-        self.last.as_ref().map_or(1, |last| after(last.sequence))
+        self.last.first().map_or(1, |last| after(last.sequence))
     }
 
     fn done(&mut self, sequence: u16, check: u32, request: Request<S>, mut replies: Replies<'_, S, impl Line>) {
         let next = self.next();
-        let answer = match &self.last {
+        let answer = match self.last.first() {
             _ if request == Request::Hello => None,
             Some(last) if (last.sequence, last.check) == (sequence, check) => last.answer.clone(),
             _ if sequence == next => None,
@@ -117,7 +124,7 @@ where
         let last = changes.then_some(&mut answer);
         self.service.answer(request, next, Replies { tag: replies.tag, line: replies.line, last });
         if !greeting {
-            self.last = Some(Last { sequence, check, answer });
+            self.last = Vec::from_array([Last { sequence, check, answer }]);
         }
     }
 }

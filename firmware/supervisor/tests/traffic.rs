@@ -110,7 +110,8 @@ fn robots_get_their_orders_and_go_by_them() {
 
 /// What a controller knows that was switched on just now.
 fn fresh(service: &mut Supervisor, agent: u16) -> (Robot<f32, 3, 4, 8>, Briefing<f32, 3, 4, 4>) {
-    let mut briefing = Briefing::new(agent);
+    let mut briefing = Briefing::new();
+    briefing.begin(agent);
     for answer in answers(service, Request::Orders { agent }) {
         briefing.take(&answer).expect("room");
     }

@@ -14,18 +14,19 @@ use pcr_supervisor::dump::Line;
 use pcr_supervisor::scenario::crowd::{OWN, PIECES, REGIONS, ROBOTS, SEGMENTS};
 use pcr_supervisor::{Answer, Briefing, Client, Event, Request, Robot};
 use semihosting::process;
-use static_cell::ConstStaticCell;
+use static_cell::{ConstStaticCell, StaticCell};
 
 type Told = Briefing<Number, ROBOTS, SEGMENTS, REGIONS>;
 type Keeper = Robot<Number, ROBOTS, REGIONS, PIECES>;
 
-static CLIENT: ConstStaticCell<Client> = ConstStaticCell::new(Client::robot(OWN));
-static TOLD: ConstStaticCell<Told> = ConstStaticCell::new(Told::new(OWN));
+static CLIENT: StaticCell<Client> = StaticCell::new();
+static TOLD: ConstStaticCell<Told> = ConstStaticCell::new(Told::new());
 static KEEPER: ConstStaticCell<Keeper> = ConstStaticCell::new(Keeper::new());
 
 #[entry]
 fn main() -> ! {
-    let (Some(client), Some(told), Some(keeper)) = (CLIENT.try_take(), TOLD.try_take(), KEEPER.try_take()) else {
+    let client = CLIENT.try_init_with(|| Client::robot(OWN));
+    let (Some(client), Some(told), Some(keeper)) = (client, TOLD.try_take(), KEEPER.try_take()) else {
         process::exit(2)
     };
     let mut link = Link { uart: Uart::start(), client };
@@ -63,7 +64,7 @@ impl Link {
 /// Drives to the end of its path; `None` where it was told nonsense.
 #[inline(never)]
 fn work(link: &mut Link, told: &mut Told, keeper: &mut Keeper) -> Option<()> {
-    told.clear();
+    told.begin(OWN);
     let mut clear = true;
     let last = link.ask(&Request::Orders { agent: OWN }, |answer| clear &= told.take(answer).is_ok())?;
     let Answer::Orders { edition, .. } = last else { return None };

@@ -27,12 +27,13 @@ type Table = Regions<Number, REGIONS, PIECES>;
 const TABLE: Table = Ecm::new([EcmEntry::EMPTY; REGIONS], [Piece::EMPTY; PIECES]);
 
 static SESSION: ConstStaticCell<Session<Number, { scenario::AGENTS }, ROOM, REGIONS, PIECES, Table>> =
-    ConstStaticCell::new(Session::of(Service::with(TABLE, &AGENTS)));
+    ConstStaticCell::new(Session::of(Service::with(TABLE, &[])));
 
 #[entry]
 fn main() -> ! {
     let mut uart = Uart::start();
     if let Some(session) = SESSION.try_take() {
+        session.build_in(&AGENTS);
         loop {
             let byte = uart.read();
             session.take(byte, &mut |bytes: &[u8]| uart.write(bytes));

@@ -21,7 +21,7 @@ pub type Table = Traffic<Number, AGENTS, REGIONS, PIECES, ORDERS>;
 pub type Supervisor = Session<Number, AGENTS, ROOM, REGIONS, PIECES, Table>;
 
 static SUPERVISOR: ConstStaticCell<Supervisor> =
-    ConstStaticCell::new(Session::of(Service::with(Traffic::new(), &BUILT_IN)));
+    ConstStaticCell::new(Session::of(Service::with(Traffic::new(), &[])));
 
 /// The watchdog's time \[ms\]: more than any board here takes from one feeding to the next (`docs/guide/firmware.md`, "The watchdog").
 pub const WATCHDOG_MS: u32 = 500;
@@ -29,7 +29,9 @@ pub const WATCHDOG_MS: u32 = 500;
 /// The supervisor, once.
 pub fn supervisor() -> &'static mut Supervisor {
     defmt::info!("{} bytes for {} agents, {} regions, {} pieces", size_of::<Supervisor>(), AGENTS, REGIONS, PIECES);
-    SUPERVISOR.take()
+    let supervisor = SUPERVISOR.take();
+    supervisor.build_in(&BUILT_IN);
+    supervisor
 }
 
 /// Only crates of the board can panic. The watchdog is then no longer fed, and restarts the board.

@@ -43,7 +43,7 @@ impl<S: Rounded> Driver<S> {
         Self {
             index,
             client: Client::robot(index),
-            briefing: Briefing::new(index),
+            briefing: Briefing::new(),
             robot: Robot::new(),
             asks: false,
             told: None,
@@ -98,14 +98,14 @@ impl<S: Rounded> Driver<S> {
     /// Its controller is switched off and on: the robot stands where it is, and knows nothing any more.
     pub(super) fn restart(&mut self) {
         (self.client, self.robot) = (Client::robot(self.index), Robot::new());
-        self.briefing.clear();
+        self.briefing.begin(self.index);
         (self.asks, self.told, self.speed, self.hold) = (false, None, 0.0, 0.0);
         self.silent = SILENCE;
     }
 
     fn inquire(&mut self) {
         (self.asks, self.waits) = (true, 0);
-        self.briefing.clear();
+        self.briefing.begin(self.index);
         assert!(self.client.ask(&Request::<S>::Orders { agent: self.index }), "a question fits a frame");
     }
 
