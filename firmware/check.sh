@@ -281,7 +281,11 @@ budgets() {
       ;;
   esac
   local paths
-  for paths in "two paths of "{1,2,4,8}", the longest found" "table of all agents"; do
+  # With many pieces of one pair, too: their number must not count more than once.
+  local many=(10 24)
+  case $target in thumbv6m*) many=(5 10) ;; esac
+  for paths in "two paths of "{1,2,4,8}", the longest found" "two paths of ${many[0]} that meet everywhere" \
+    "two paths of ${many[1]} that meet everywhere" "table of all agents"; do
     limit "$file" "instructions a pair of segments: $paths" "$(worst_case "$target" "$format")"
   done
   # Single calls, where they are measured: tables and movement authority, and searches, which need more.

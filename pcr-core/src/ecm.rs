@@ -466,7 +466,7 @@ where
     }
 
     /// Removes the regions of one agent. Afterwards the table can be used again when the agent has been inserted again,
-    /// or, if it was the last one of the fleet, for the fleet without it. O(agents + regions).
+    /// or, if it was the last one of the fleet, for the fleet without it. O(agents + regions + pieces).
     ///
     /// # Errors
     /// [`MismatchError`].
@@ -479,7 +479,7 @@ where
     }
 
     /// Removes one agent for good, with its regions. The index of every agent behind it decreases by one, and the table
-    /// is then that of the fleet without the agent. O(agents + regions).
+    /// is then that of the fleet without the agent. O(agents + regions + pieces).
     ///
     /// # Errors
     /// As [`Ecm::remove`].

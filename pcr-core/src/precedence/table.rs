@@ -295,7 +295,7 @@ where
         Ok(())
     }
 
-    /// Removes the regions of one agent and their orders, like [`Ecm::remove`]. O(agents + regions).
+    /// Removes the regions of one agent and their orders, like [`Ecm::remove`]. O(agents + regions + pieces).
     ///
     /// # Errors
     /// [`MismatchError`]; the table is then unchanged.
@@ -306,7 +306,7 @@ where
     }
 
     /// Removes one agent for good, with its regions and their orders, like [`Ecm::erase`]: the index of every agent
-    /// behind it decreases by one. O(agents + regions).
+    /// behind it decreases by one. O(agents + regions + pieces).
     ///
     /// # Errors
     /// [`MismatchError`]; the table is then unchanged.

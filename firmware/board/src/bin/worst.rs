@@ -17,16 +17,20 @@ use static_cell::ConstStaticCell;
 
 /// Segments of a path; climbs, unless the build says otherwise, and changes in each.
 const SIZES: [(usize, u32, u32); 4] = [(1, 64, 250), (2, 16, 250), (4, 6, 200), (8, 2, 150)];
+/// Segments of two paths whose segments all meet, and room for them and for their pieces. A Cortex-M0 has 16 KiB of RAM.
+const MANY: [usize; 2] = if cfg!(armv6m) { [5, 10] } else { [10, 24] };
+const SEGMENTS: usize = if cfg!(armv6m) { scenario::SEGMENTS } else { 48 };
+const PIECES: usize = if cfg!(armv6m) { scenario::PIECES } else { 576 };
 const CLIMBS: Option<&str> = option_env!("PCR_WORST_CLIMBS");
 const ONE: Number = <Number as pcr_supervisor::Number>::ONE;
 
-type Storage = FleetStorage<'static, Number, { scenario::AGENTS }, { scenario::SEGMENTS }>;
-type Table = Ecm<Number, [EcmEntry; scenario::REGIONS], [Piece<Number>; scenario::PIECES]>;
+type Storage = FleetStorage<'static, Number, { scenario::AGENTS }, SEGMENTS>;
+type Table = Ecm<Number, [EcmEntry; scenario::REGIONS], [Piece<Number>; PIECES]>;
 
 // The pairs of paths, and then the 12 agents.
 static STORE: ConstStaticCell<Storage> = ConstStaticCell::new(Storage::new());
 static TABLE: ConstStaticCell<Table> =
-    ConstStaticCell::new(Ecm::new([EcmEntry::EMPTY; scenario::REGIONS], [Piece::EMPTY; scenario::PIECES]));
+    ConstStaticCell::new(Ecm::new([EcmEntry::EMPTY; scenario::REGIONS], [Piece::EMPTY; PIECES]));
 
 #[entry]
 fn main() -> ! {
@@ -48,6 +52,12 @@ fn run() -> Option<()> {
             .text(b"  instructions a pair of segments: two paths of ");
         let what = what.integer(size as u32, 0).text(b", the longest found\n");
         out::print(what.as_bytes());
+    }
+    for size in MANY {
+        let pairs = size.saturating_mul(size) as u32;
+        let line = Line::default().integer(per_pair(search.many(size)?, pairs)?, 9);
+        let line = line.text(b"  instructions a pair of segments: two paths of ").integer(size as u32, 0);
+        out::print(line.text(b" that meet everywhere\n").as_bytes());
     }
     let (took, pairs) = twelve(&search.meter, search.store, search.table)?;
     let line = Line::default().integer(per_pair(took, pairs)?, 9);
@@ -123,6 +133,27 @@ impl Search {
         for course in pair {
             course.add(self.store, size)?;
         }
+        self.insert()
+    }
+
+    /// Instructions of the regions of two paths of this many lines, each of which is within reach of all lines of the other path.
+    fn many(&mut self, size: usize) -> Option<u32> {
+        self.store.clear();
+        self.table.clear();
+        let length = ONE.half().half().half().half().half();
+        let steps = [Step { curve: Curve::Line, length }; if cfg!(armv6m) { 10 } else { 24 }];
+        for east in [ONE, Number::ZERO] {
+            let heading = <Number as Scalar>::Angle::atan2(ONE - east, east);
+            let start = Pose { position: Point::new(Number::ZERO, Number::ZERO), heading };
+            let limits = Limits { speed: ONE, acceleration: ONE };
+            let agent = Agent { radius: ONE, start_time: Number::ZERO, limits, start, path: steps.get(..size)? };
+            agent.add_to(self.store).ok()?;
+        }
+        self.insert().filter(|_| self.table.pieces() == size.saturating_mul(size))
+    }
+
+    /// Instructions of the regions of the two paths in the storage; 0 if the table has no room for them.
+    fn insert(&mut self) -> Option<u32> {
         let mut motions = FleetMotions::new();
         motions.fill(self.store).ok()?;
         self.table.insert(motions.get(..1)?, 0).ok()?;
