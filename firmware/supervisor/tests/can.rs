@@ -84,7 +84,8 @@ fn drive(seed: u32, packed: bool) -> usize {
     let [Answer::Edition(edition)] = answers(&mut service, Request::Order(terms))[..] else { panic!("orders") };
     let briefings: Vec<_> = (0..ROBOTS as u16)
         .map(|agent| {
-            let mut briefing = Briefing::<f32, ROBOTS, 8, 16>::new(agent);
+            let mut briefing = Briefing::<f32, ROBOTS, 8, 16>::new();
+            briefing.begin(agent);
             let told = answers(&mut service, Request::Orders { agent });
             told.iter().for_each(|answer| briefing.take(answer).expect("room"));
             briefing

@@ -72,7 +72,8 @@ fn robots_get_their_orders_and_go_by_them() {
     assert_eq!(passes, [(0, PassingState::Second), (2, PassingState::First)]);
     assert_eq!(told.last(), Some(&Answer::Orders { agent: 1, edition: FIRST, path: 1, at: Interval::new(0.0, 0.0) }));
 
-    let mut briefing = Briefing::<f32, 3, 4, 4>::new(1);
+    let mut briefing = Briefing::<f32, 3, 4, 4>::new();
+    briefing.begin(1);
     told.iter().for_each(|answer| briefing.take(answer).expect("room"));
     let mut fleet = FleetMotions::new();
     fleet.fill(briefing.paths()).expect("motions");
@@ -144,7 +145,7 @@ fn a_robot_that_was_restarted_on_the_way_does_not_begin_again() {
         robot.hear(&briefing, &answer);
     }
     assert_eq!(robot.hold(&fleet), 4.0);
-    assert_eq!(Robot::<f32, 3, 4, 8>::new().resume(&Briefing::<f32, 3, 4, 4>::new(0)), Err(Unclear::Disagreement));
+    assert_eq!(Robot::<f32, 3, 4, 8>::new().resume(&Briefing::<f32, 3, 4, 4>::new()), Err(Unclear::Disagreement));
 
     // Sent, and not heard of since then: it may have set off.
     report(&mut service, 2, FIRST, 0.0);
@@ -208,7 +209,8 @@ fn what_a_robot_was_not_told_of_is_no_order() {
     let mut service = running();
     let told = answers(&mut service, Request::Orders { agent: 1 });
     let fleet_of = |told: &[Answer<f32>]| {
-        let mut briefing = Briefing::<f32, 3, 4, 4>::new(1);
+        let mut briefing = Briefing::<f32, 3, 4, 4>::new();
+        briefing.begin(1);
         told.iter().for_each(|answer| briefing.take(answer).expect("room"));
         briefing
     };
@@ -231,7 +233,8 @@ fn what_a_robot_was_not_told_of_is_no_order() {
     twice.insert(3, told[3].clone());
     assert_eq!(brief(&twice), (false, false));
     // Orders that have changed while they were sent.
-    let mut mixed = Briefing::<f32, 3, 4, 4>::new(1);
+    let mut mixed = Briefing::<f32, 3, 4, 4>::new();
+    mixed.begin(1);
     for (place, answer) in told.iter().enumerate() {
         let mut answer = answer.clone();
         if let (4, Answer::Passing { edition, .. }) = (place, &mut answer) {
@@ -239,7 +242,8 @@ fn what_a_robot_was_not_told_of_is_no_order() {
         }
         assert_eq!(mixed.take(&answer).is_err(), place == 4, "{answer:?}");
     }
-    let mut small = Briefing::<f32, 2, 4, 1>::new(1);
+    let mut small = Briefing::<f32, 2, 4, 1>::new();
+    small.begin(1);
     assert!(told.iter().any(|answer| small.take(answer).is_err()), "what does not fit is told");
 }
 
