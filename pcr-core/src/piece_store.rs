@@ -508,8 +508,8 @@ mod tests {
     }
 
     #[test]
-    #[cfg(feature = "std")]
     fn a_pair_has_at_most_32767_pieces_whatever_there_is_room_for() {
+        extern crate std;
         let mut pieces = PieceStore::new(std::vec![Piece::EMPTY; 100_000]);
         for round in 1..=2 {
             for k in 0..32767 {
