@@ -42,6 +42,7 @@
 //! outcome               results of a run                                              LifelongResult
 //! world_changes         what is closed, and who is stranded                           ChangeEffect
 //! change_effects        closures and breakdowns that begin and end
+//! speed_limits          closures that limit the speed
 //! change_results        what they did                                                 ChangeResults
 //! site_changes          the same in answers                                            ClosureEntry
 //! own_missions          missions of a file, and what became of them
@@ -95,6 +96,7 @@ mod run;
 mod run_state;
 mod scheduling;
 pub mod site_changes;
+mod speed_limits;
 mod starvation;
 mod streets;
 mod task_assignment;

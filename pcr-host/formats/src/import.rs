@@ -83,7 +83,7 @@ mod xml;
 pub use applicable_options::InputKind;
 pub use grid::GridPlan;
 pub use json_access::parse as parse_json;
-pub use layout::{ElementId, Layout, LayoutEdge, LayoutNode};
+pub use layout::{ElementId, Layout, LayoutEdge, LayoutNode, LayoutZone};
 pub use nav2::graph_id;
 pub use poses::{BetweenPoses, PoseLog, PoseOptions, PoseTrack, TimedPose, poses};
 pub use rmf::is_navigation_graph;

@@ -29,7 +29,7 @@ pub enum RecordKind {
     Vehicle,
     /// A mission.
     Mission,
-    /// An edge or a node that is closed for some time.
+    /// An edge, a node or a zone that is closed for some time, or where vehicles are slower.
     Closure,
     /// A vehicle that stands still from a time on.
     Breakdown,
@@ -61,7 +61,7 @@ impl RecordKind {
                 "forbidden",
             ],
             Self::Mission => &["kind", "id", "from", "via", "to", "release", "due", "priority", "vehicle"],
-            Self::Closure => &["kind", "edge", "node", "at", "until"],
+            Self::Closure => &["kind", "edge", "node", "zone", "speed", "at", "until"],
             Self::Breakdown => &["kind", "vehicle", "at", "until"],
         }
     }

@@ -1,6 +1,7 @@
 //! Events: messages that the supervisor sends without a request.
 
 use crate::robot::Alarm;
+use crate::supervisor::SpeedLimit;
 use serde::{Serialize, Serializer};
 use std::fmt;
 
@@ -67,6 +68,16 @@ pub enum SupervisorEvent {
         length: f64,
         /// Length of the new path up to which the robot had already been allowed to go \[m\].
         hold: f64,
+    },
+    /// On these parts of its path a robot may be no faster; they replace those that it was told before for this path. One that is faster there
+    /// brakes.
+    Limits {
+        /// Name of the robot.
+        robot: String,
+        /// Number of its path.
+        path: u64,
+        /// The parts; none: no limit any more.
+        limits: Vec<SpeedLimit>,
     },
     /// A mission cannot be admitted yet. It is tried again; this event comes again when the reason changes.
     Waiting {
@@ -175,6 +186,7 @@ impl SupervisorEvent {
         match self {
             Self::Hold { robot, .. }
             | Self::Admitted { robot, .. }
+            | Self::Limits { robot, .. }
             | Self::Waiting { robot, .. }
             | Self::Dropped { robot, .. }
             | Self::Silent { robot, .. }

@@ -1,7 +1,7 @@
 //! The line protocol: a JSON object on each line, one answer to each request with its `id`, and events for clients that
 //! subscribe. The schema is `docs/reference/schema/pcr-serve.schema.json`.
 
-use crate::closed_area::ClosedArea;
+use crate::closed_area::ClosureRequest;
 use crate::event::SupervisorEvent;
 use crate::journal_entry::PageLayout;
 use crate::line_angles;
@@ -40,8 +40,8 @@ enum Request {
     Remove(RobotRef),
     /// A robot is away, or no longer.
     Away(AbsenceReport),
-    /// An area is closed.
-    Close(ClosedArea),
+    /// An area is closed, or the speed in it is limited.
+    Close(ClosureRequest),
     /// An area is open again.
     Open(ClosureRef),
     /// The position of a robot.
@@ -241,7 +241,10 @@ pub fn carry_out(supervisor: &mut Supervisor, request: RequestLine, came: f64, n
         Request::Away(AbsenceReport { robot, away }) => {
             supervisor.set_away(&robot, away).map(|keeps_place| json!({ "away": away, "keeps_place": keeps_place }))
         }
-        Request::Close(area) => supervisor.close(area).map(|impact| json!(impact)),
+        Request::Close(asked) => {
+            let area = asked.area(supervisor.layout()).map_err(RequestError::invalid)?;
+            supervisor.close(area).map(|impact| json!(impact))
+        }
         Request::Open(ClosureRef { closure }) => supervisor.open(&closure).map(|there| json!({ "opened": there })),
         Request::Position(report) => supervisor.position(&report, came).map(|()| json!({})),
         Request::Off(OffPathReport { robot, x, y, age }) => {

@@ -71,6 +71,7 @@ impl LogWriter {
         let level = match event {
             SupervisorEvent::Hold { .. } => LogLevel::Debug,
             SupervisorEvent::Admitted { .. }
+            | SupervisorEvent::Limits { .. }
             | SupervisorEvent::Waiting { .. }
             | SupervisorEvent::Heard { .. }
             | SupervisorEvent::Away { .. }

@@ -4,7 +4,7 @@ use crate::journal_entry::StoredPassingState;
 use crate::owned_path::{JOINT, OwnedPath, PathElement, StartPose};
 use crate::request_error::RequestError;
 use crate::robot::{Alarm, ROOM, SupervisedRobot};
-use crate::supervisor::Supervisor;
+use crate::supervisor::{SpeedLimit, Supervisor};
 use pcr_core::{Encounter, Interval, Limits, Motion, Profile};
 use pcr_formats::footprint::Footprint;
 use pcr_planning::fleet::ConvexBody;
@@ -43,7 +43,7 @@ pub enum Query {
         /// End of the time to look at, from now \[s\].
         until: f64,
     },
-    /// The areas that are closed.
+    /// The areas that are closed, or where the speed is limited.
     Closures {},
     /// Numbers of events since the start.
     Counts {},
@@ -78,6 +78,9 @@ pub(crate) struct RobotView<'a> {
     /// Closed area before which it waits.
     #[serde(skip_serializing_if = "Option::is_none")]
     closure: Option<&'a str>,
+    /// Where its speed is limited on its path.
+    #[serde(skip_serializing_if = "<[SpeedLimit]>::is_empty")]
+    limits: &'a [SpeedLimit],
     #[serde(skip_serializing_if = "std::ops::Not::not")]
     away: bool,
     silent: bool,
@@ -106,6 +109,7 @@ impl<'a> RobotView<'a> {
             alarm: robot.alarm.as_ref(),
             stopped_for: robot.stopped.as_deref(),
             closure: robot.closure.as_deref(),
+            limits: &robot.speed_limits,
             away: robot.away,
             silent: robot.silent,
             start: robot.course.start(),

@@ -1,6 +1,7 @@
 //! The state of a robot: its abilities, its path, its place on the path, and how far it has been allowed to go.
 
 use crate::owned_path::{OwnedPath, PathElement, PathRounding};
+use crate::supervisor::SpeedLimit;
 use pcr_core::{Interval, InvalidInput, Motion, MovementAuthority, Progress};
 use pcr_formats::footprint::Footprint;
 use pcr_planning::fleet::ConvexBody;
@@ -271,6 +272,10 @@ pub struct SupervisedRobot {
     pub stopped: Option<String>,
     /// Name of the closed area before which it waits.
     pub(crate) closure: Option<String>,
+    /// Where its speed is limited on its path, as it was told.
+    pub(crate) speed_limits: Vec<SpeedLimit>,
+    /// The number of the path and the revision of the closures of which these are; `None`: nothing was told since the start.
+    pub(crate) limits_at: Option<(u64, u64)>,
     /// Its waiting mission, if there is one.
     pub waiting: Option<PendingMission>,
     /// Whether a person has said that it is away.
@@ -322,6 +327,8 @@ impl SupervisedRobot {
             alarm: None,
             stopped: None,
             closure: None,
+            speed_limits: Vec::new(),
+            limits_at: None,
             waiting: None,
             away: false,
             returned: false,

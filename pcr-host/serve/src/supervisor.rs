@@ -17,7 +17,7 @@ mod robot_notes;
 
 pub use absence::{StandingPlace, UnplacedVehicle};
 pub use admission::{AdmissionResult, MissionRequest};
-pub use closures::ClosureImpact;
+pub use closures::{ClosureImpact, SpeedLimit};
 pub use positions::PositionReport;
 pub use restore::JournalError;
 
@@ -124,6 +124,8 @@ pub struct Supervisor {
     unplaced: BTreeMap<String, UnplacedVehicle>,
     /// Areas that are closed, by name.
     closures: BTreeMap<String, closures::ClosedPath>,
+    /// A number that changes whenever an area is closed or opened.
+    closure_revision: u64,
     /// Names of vehicles that may be away without being here.
     expected: BTreeSet<String>,
     /// Highest path number of any removed robot. New robots get higher numbers, so late messages of a removed robot with the same name are
@@ -166,6 +168,7 @@ impl Supervisor {
             away: BTreeSet::new(),
             unplaced: BTreeMap::new(),
             closures: BTreeMap::new(),
+            closure_revision: 0,
             expected: BTreeSet::new(),
             spent: 0,
             begun: None,
@@ -406,6 +409,7 @@ impl Supervisor {
         self.retry(now);
         self.note_silence(now);
         let limits = self.limits(now);
+        self.tell_speed_limits();
         self.release(&limits);
         self.note_standstill(now);
     }

@@ -35,6 +35,10 @@ impl Telemetry {
         let text = match event {
             SupervisorEvent::Hold { .. } => return,
             SupervisorEvent::Admitted { mission, length, .. } => format!("{robot} has {mission}, {length:.1} m"),
+            SupervisorEvent::Limits { limits, .. } => match limits.iter().map(|limit| limit.speed).reduce(f64::min) {
+                Some(speed) => format!("{robot} has to slow down to {speed} m/s on its path"),
+                None => format!("no limit of the speed any more for {robot}"),
+            },
             SupervisorEvent::Waiting { mission, why, .. } => format!("{mission} of {robot} waits: {why}"),
             SupervisorEvent::Dropped { mission, why, .. } => format!("{mission} of {robot} is given up: {why}"),
             SupervisorEvent::Silent { since, .. } => format!("{robot} is not heard for {since:.0} s"),

@@ -31,7 +31,8 @@ fn one(disc: &Disc) -> Supervisor {
 /// A lane across the way of that robot.
 fn area(x: f64, radius: f64) -> ClosedArea {
     let start = StartPose { x, y: -2.0, heading: std::f64::consts::FRAC_PI_2 };
-    ClosedArea { name: "aisle 3".into(), start, path: vec![PathElement::Line { length: 4.0 }], radius }
+    let path = vec![PathElement::Line { length: 4.0 }];
+    ClosedArea { name: "aisle 3".into(), start, path, more: Vec::new(), radius, of: None, speed: None }
 }
 
 fn names(events: &[SupervisorEvent]) -> Vec<String> {
@@ -224,4 +225,109 @@ fn the_verbs_fit_the_schema_and_what_is_wrong_is_refused() {
     own.close(area(0.0, 0.5)).unwrap();
     let pose = StartPose { x: 9.0, y: 0.0, heading: 0.0 };
     assert!(matches!(own.add("aisle 3", ABILITIES, pose), Err(RequestError::Invalid { .. })));
+}
+
+/// A lane across its path, in which it may drive at 0.2 m/s.
+fn slow(x: f64) -> ClosedArea {
+    ClosedArea { speed: Some(0.2), ..area(x, 0.5) }
+}
+
+/// The limits of the last event about them, as lengths and speeds.
+fn limits(events: &[SupervisorEvent]) -> Option<Vec<([f64; 2], f64)>> {
+    let last = events.iter().rev().find_map(|event| match event {
+        SupervisorEvent::Limits { limits, .. } => Some(limits),
+        _ => None,
+    })?;
+    Some(last.iter().map(|limit| (limit.length, limit.speed)).collect())
+}
+
+#[test]
+fn robots_are_told_where_their_speed_is_limited_before_they_may_go_there() {
+    let disc = Disc::new();
+    let mut own = one(&disc);
+    own.close(slow(0.0)).unwrap();
+    // It is admitted, and told where before its first authority.
+    let verdict = own.mission(&straight("1", 10.0), 0.0).unwrap();
+    assert!(matches!(verdict, AdmissionResult::Admitted { .. }), "{verdict:?}");
+    let events = own.settle(0.0).unwrap();
+    assert_eq!(names(&events), ["admitted", "limits", "hold"]);
+    let told = limits(&events).unwrap();
+    let [([lo, hi], speed)] = told[..] else { panic!("{told:?}") };
+    assert!((lo - 4.25).abs() < 1e-3 && (hi - 5.75).abs() < 1e-3 && speed == 0.2, "{told:?}");
+    let answer = handle(&mut own, br#"{"verb": "query", "what": "robots"}"#, 0.0, 0.0).answer;
+    fits(&serde_json::from_str(&document("reference/schema/pcr-serve.schema.json")).unwrap(), &answer);
+    assert_eq!(answer["ok"]["robots"][0]["limits"][0]["closure"], "aisle 3");
+    // Nothing is told again, and it gets through.
+    assert!(!names(&is_at(&mut own, 1.0, 1.0)).contains(&"limits".to_owned()));
+    // After a restart it is told again, because it may not have been told.
+    drop(own);
+    let mut own = Supervisor::restored(SupervisorConfig::default(), disc.entries(), Box::new(disc.clone())).unwrap();
+    assert_eq!(limits(&own.settle(2.0).unwrap()), Some(told));
+    assert!(goes(&mut own, 3.0) > 9.99);
+    // One that is in it is told as well, and when the limit ends.
+    let mut own = one(&Disc::new());
+    own.mission(&straight("1", 10.0), 0.0).unwrap();
+    own.settle(0.0).unwrap();
+    is_at(&mut own, 3.0, 3.0);
+    let impact = own.close(slow(-2.0)).unwrap();
+    assert_eq!((impact.through, impact.stopped.len()), (vec!["east".to_owned()], 0));
+    let events = own.settle(3.1).unwrap();
+    assert!(limits(&events).is_some_and(|all| all.len() == 1) && !names(&events).contains(&"stop".to_owned()), "{events:?}");
+    own.open("aisle 3").unwrap();
+    assert_eq!(limits(&own.settle(3.2).unwrap()), Some(Vec::new()));
+}
+
+#[test]
+fn areas_are_closed_by_the_ids_of_the_layout() {
+    let schema: Value = serde_json::from_str(&document("reference/schema/pcr-serve.schema.json")).unwrap();
+    let disc = Disc::new();
+    let mut own = one(&disc);
+    let ask = |own: &mut Supervisor, request: Value| {
+        fits(&schema, &request);
+        let answer = handle(own, request.to_string().as_bytes(), 0.0, 0.0).answer;
+        fits(&schema, &answer);
+        answer
+    };
+    let edge = json!({ "verb": "close", "closure": "A", "edge": "e1", "radius": 0.3 });
+    let why = ask(&mut own, edge.clone())["error"]["message"].clone();
+    assert_eq!(why, "edge: the layout that was sent has no edge e1");
+    let lane = |x: f64, edge: Value, zones: Value| {
+        json!({ "start": { "x": x, "y": -2, "heading_deg": 90 }, "path": [{ "kind": "line", "length": 4 }], "edge": edge, "zones": zones })
+    };
+    let lanes = [lane(0.0, json!("e1"), json!([])), lane(2.0, json!(7), json!(["bay"])), lane(3.0, json!(8), json!(["bay"]))];
+    let nodes = json!([{ "node": 4, "x": -1.0, "y": 0.0, "zones": ["bay"] }, { "node": "n5", "x": 1.0, "y": 0.0 }]);
+    assert!(ask(&mut own, json!({ "verb": "layout", "name": "hall", "lanes": lanes, "nodes": nodes }))["ok"].is_object());
+    own.mission(&straight("1", 10.0), 0.0).unwrap();
+    own.settle(0.0).unwrap();
+    let stops_before = |own: &mut Supervisor, request: Value, at: f64| {
+        let answer = ask(own, request.clone());
+        assert_eq!(answer["ok"]["before"], json!(["east"]), "{answer}");
+        assert_eq!(ask(own, request), answer, "repeated");
+        let mut other = one(&Disc::new());
+        other.close(own.closures().next().unwrap().clone()).unwrap();
+        let verdict = other.mission(&straight("1", at - 0.01), 0.0).unwrap();
+        assert!(matches!(verdict, AdmissionResult::Admitted { .. }), "{verdict:?}");
+        let verdict = other.mission(&straight("2", 0.5), 0.0).unwrap();
+        assert!(matches!(verdict, AdmissionResult::Waiting { .. }), "{verdict:?}");
+        own.open("A").unwrap();
+    };
+    // The robot has a radius of 0.25 m and begins at x = -5 m.
+    stops_before(&mut own, edge, 5.0 - 0.55);
+    stops_before(&mut own, json!({ "verb": "close", "closure": "A", "edge": "7", "radius": 0.3 }), 7.0 - 0.55);
+    stops_before(&mut own, json!({ "verb": "close", "closure": "A", "node": "n5", "radius": 0.3 }), 6.0 - 0.55);
+    let zone = json!({ "verb": "close", "closure": "A", "zone": "bay", "radius": 0.3 });
+    stops_before(&mut own, zone.clone(), 4.0 - 0.55);
+    // A restart keeps it, whatever the layout is by then.
+    ask(&mut own, zone);
+    own.settle(1.0).unwrap();
+    let before = own.closures().next().unwrap().clone();
+    assert_eq!((before.more.len(), json!(before.of)), (2, json!({ "zone": "bay" })));
+    drop(own);
+    let mut own = Supervisor::restored(SupervisorConfig::default(), disc.entries(), Box::new(disc)).unwrap();
+    assert_eq!(own.closures().next(), Some(&before));
+    let told = ask(&mut own, json!({ "verb": "query", "what": "closures" }));
+    assert_eq!(told["ok"]["closures"][0]["of"]["zone"], "bay");
+    let both = json!({ "verb": "close", "closure": "B", "edge": "e1", "node": 4, "radius": 0.3 });
+    let answer = handle(&mut own, both.to_string().as_bytes(), 0.0, 0.0).answer;
+    assert!(answer["error"]["message"].as_str().unwrap().starts_with("a closure is of one place"), "{answer}");
 }

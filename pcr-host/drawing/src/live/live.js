@@ -61,7 +61,7 @@ function surface() {
 
 function draw() {
   const [c, width, height] = surface(), robots = state ? state.robots : [];
-  const lanes = layout.lanes.map(({ start, path }) => points({ start, shapes: path })), paths = robots.map(points), closed = (state?.closures ?? []).map(({ start, path }) => points({ start, shapes: path }));
+  const lanes = layout.lanes.map(({ start, path }) => points({ start, shapes: path })), paths = robots.map(points), areas = (state?.closures ?? []).flatMap(({ start, path, radius, speed, more = [] }) => [{ start, path }, ...more].map((it) => ({ all: points({ start: it.start, shapes: it.path }), radius, speed }))), closed = areas.map(({ all }) => all);
   const box = [Infinity, -Infinity, Infinity, -Infinity];
   for (const [x, y] of [...lanes, ...closed, ...paths].flat()) {
     box[0] = Math.min(box[0], x); box[1] = Math.max(box[1], x); box[2] = Math.min(box[2], y); box[3] = Math.max(box[3], y);
@@ -76,8 +76,7 @@ function draw() {
   c.lineWidth = 3;
   lanes.forEach(line);
   c.strokeStyle = theme.hit;
-  c.globalAlpha = 0.25;
-  closed.forEach((all, k) => { c.lineWidth = Math.max(3, 2 * state.closures[k].radius * scale); line(all.length > 1 ? all : [all[0], all[0]]); });
+  areas.forEach(({ all, radius, speed }) => { c.globalAlpha = speed ? 0.1 : 0.25; c.lineWidth = Math.max(3, 2 * radius * scale); line(all.length > 1 ? all : [all[0], all[0]]); });
   c.globalAlpha = 1;
   const ego = $("ego").value, place = new Map();
   robots.forEach((robot, k) => {

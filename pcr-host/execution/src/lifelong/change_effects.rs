@@ -22,13 +22,20 @@ impl LifelongState {
         }
         let [begun, over] = self.world.due(now);
         let ends_something = !over.is_empty();
+        let limits = |change: &ChangeId| self.world.limit(*change).is_some();
+        if begun.iter().chain(&over).any(limits) {
+            self.limit_speeds(&begun, now);
+        }
         for change in over {
-            if let ChangeId::Closure(k) = change {
+            if let ChangeId::Closure(k) = change
+                && self.world.limit(change).is_none()
+            {
                 self.close(self.world.changes.closures[k].element, false);
             }
         }
         for &change in &begun {
             match change {
+                ChangeId::Closure(_) if self.world.limit(change).is_some() => {}
                 ChangeId::Closure(k) => {
                     self.close(self.world.changes.closures[k].element, true);
                     self.turn_away(change, now);
@@ -55,9 +62,10 @@ impl LifelongState {
 
     /// The atoms that nobody may enter while an element is closed.
     fn closed_atoms(&self, element: ClosedElement) -> Vec<usize> {
-        let is_closed = |atom: &usize| match element {
-            ClosedElement::Edge(_) => self.site.atoms[*atom].edge.is_some_and(|edge| self.world.is_of(element, edge)),
-            ClosedElement::Node(place) => self.site.atoms[*atom].ends[1] % self.site.places() == place,
+        let is_closed = |atom: &usize| {
+            let it = &self.site.atoms[*atom];
+            it.edge.is_some_and(|edge| self.world.has_edge(element, edge))
+                || self.world.has_node(element, it.ends[1] % self.site.places())
         };
         (0..self.site.edges).filter(is_closed).collect()
     }
@@ -72,6 +80,7 @@ impl LifelongState {
     /// The atoms that a change takes from a robot.
     pub(super) fn blocked(&self, change: ChangeId, robot: usize) -> Rc<[usize]> {
         match change {
+            ChangeId::Closure(_) if self.world.limit(change).is_some() => Rc::default(),
             ChangeId::Closure(k) => self.closed_atoms(self.world.changes.closures[k].element).into(),
             ChangeId::Breakdown(k) => match self.world.changes.breakdowns[k].vehicle {
                 other if other == robot || other >= self.robots.len() => Rc::default(),
@@ -177,13 +186,11 @@ impl LifelongState {
             if is_turned && !is_rerouted {
                 self.end_circles(now);
             }
-            let effect = match (is_through, is_turned) {
-                (true, _) => ChangeEffect::Through,
-                (false, true) if is_rerouted => ChangeEffect::Rerouted,
-                (false, true) => ChangeEffect::Waits,
-                (false, false) => continue,
-            };
-            self.world.record(closure).effects.push((robot, effect));
+            let turned = if is_rerouted { ChangeEffect::Rerouted } else { ChangeEffect::Waits };
+            // One that drives through and would have come back gets another route or waits as well.
+            let effects = [(is_through, ChangeEffect::Through), (is_turned, turned)];
+            let effects = effects.into_iter().filter(|effect| effect.0).map(|effect| (robot, effect.1));
+            self.world.record(closure).effects.extend(effects);
         }
         self.end_circles(now);
     }

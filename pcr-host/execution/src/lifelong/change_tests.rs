@@ -42,7 +42,7 @@ fn watched(imported: &ImportedLayout, request: LifelongOptions, changes: &SiteCh
             let begun: Vec<bool> = run.world.closures.iter().map(|it| it.is_begun).collect();
             run.change_world(now);
             for (k, closure) in changes.closures.iter().enumerate() {
-                if run.world.closures[k].is_begun && !begun[k] {
+                if run.world.closures[k].is_begun && !begun[k] && closure.speed.is_none() {
                     let atoms = run.blocked(ChangeId::Closure(k), usize::MAX);
                     let effects = &run.world.closures[k].effects;
                     for (robot, _) in effects.iter().filter(|effect| effect.1 == ChangeEffect::Through) {
@@ -68,6 +68,10 @@ fn watched(imported: &ImportedLayout, request: LifelongOptions, changes: &SiteCh
                 through[robot].retain(|&other| run.world.closed[other] > 0);
             }
             let brakes = it.speed < before[robot].1 || it.speed == 0.0;
+            // Whoever is faster than the limit brakes as hard as it can.
+            let limit = run.site.atoms[it.way.atoms[it.way.atom(it.at)]].speed.max(it.abilities.acceleration * STEP);
+            let is_kept = it.speed <= limit + 1e-9 || it.speed <= before[robot].1 - it.abilities.acceleration * STEP + 1e-9;
+            assert!(is_kept, "at {now} robot {robot} drives at {} where {limit} m/s are allowed", it.speed);
             assert!(!run.world.is_stranded(robot, now) || brakes, "robot {robot} drives at {now}");
         }
         tick += 1;
@@ -86,22 +90,23 @@ fn changes(imported: &ImportedLayout, robots: usize, duration: f64, seed: u64) -
         let at = duration * random.unit();
         (at, (!k.is_multiple_of(3)).then(|| at + 1.0 + 0.3 * duration * random.unit()))
     };
-    let times: Vec<_> = (0..9).map(&mut time).collect();
-    let closures = times[..6].iter().enumerate().map(|(k, &(at, until))| {
-        let element = match k % 2 {
-            0 => ClosedElement::Edge(random.below(layout.edges.len())),
-            _ => ClosedElement::Node(random.below(layout.nodes.len())),
+    let times: Vec<_> = (0..15).map(&mut time).collect();
+    let closures = times[..12].iter().enumerate().map(|(k, &(at, until))| {
+        let (element, speed) = match k {
+            6.. => (ClosedElement::Edge(random.below(layout.edges.len())), Some([0.05, 0.2, 0.4][k % 3])),
+            0 | 2 | 4 => (ClosedElement::Edge(random.below(layout.edges.len())), None),
+            _ => (ClosedElement::Node(random.below(layout.nodes.len())), None),
         };
-        Closure { element, at, until }
+        Closure { element, speed, at, until }
     });
     let closures = closures.collect();
-    let breakdowns = times[6..].iter().map(|&(at, until)| Breakdown { vehicle: random.below(robots), at, until });
+    let breakdowns = times[12..].iter().map(|&(at, until)| Breakdown { vehicle: random.below(robots), at, until });
     SiteChanges { closures, breakdowns: breakdowns.collect() }
 }
 
 #[test]
 fn nobody_enters_what_is_closed_and_runs_are_certified() {
-    let mut effects = [0; 3];
+    let mut effects = [0; 4];
     for (imported, robots) in [(real("aws_graph.geojson"), 6), (real("warehouse_graph.geojson"), 8)] {
         for seed in 1..=4 {
             let some = changes(&imported, robots, 600.0, seed);
@@ -133,7 +138,7 @@ fn tasks_that_cannot_be_reached_are_told_and_hold_nobody_up() {
     let site = LifelongState::new(&imported, options(4, 60.0, 1), &SiteChanges::default(), None).expect("a fleet");
     let goal = site.ends.nodes[site.ends.nodes.len() / 2];
     let closed = |until: Option<f64>| SiteChanges {
-        closures: vec![Closure { element: ClosedElement::Node(goal), at: 60.0, until }],
+        closures: vec![Closure { element: ClosedElement::Node(goal), speed: None, at: 60.0, until }],
         breakdowns: Vec::new(),
     };
     let (open, all) = watched(&imported, options(4, 1800.0, 1), &SiteChanges::default());

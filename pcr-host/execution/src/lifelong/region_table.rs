@@ -195,6 +195,20 @@ impl RegionTable {
         self.add(regions);
     }
 
+    /// Computes the times of the regions of a robot anew, after those of its way or of another one have changed.
+    pub(super) fn retime(&mut self, robot: usize, robots: &[LifelongRobot]) {
+        for &place in &self.rows[robot] {
+            if let Some(region) = &mut self.regions[place] {
+                let ways = region.robots.map(|robot| &robots[robot].way);
+                for side in 0..2 {
+                    let anew = |it: &TimedGate| timed(it.gate, ways[1 - side], ways[side]);
+                    region.gates[side] = region.gates[side].iter().map(anew).collect();
+                }
+                region.ends = region.gates.each_ref().map(|gates| Some([*gates.first()?, *gates.last()?]));
+            }
+        }
+    }
+
     /// Adds regions of ways that it has already.
     pub(super) fn add(&mut self, regions: Vec<RouteRegion>) {
         for region in regions {

@@ -201,14 +201,14 @@ impl LifelongRobot {
         self.done.push(RobotPhase { time, duration, speed: [self.speed, to] });
     }
 
-    /// Length of the next lower speed limit, and that speed.
-    fn slower_ahead(&self) -> Option<(f64, f64)> {
+    /// Distances of the lower speed limits within reach, and these speeds.
+    fn slower_ahead(&self) -> impl Iterator<Item = (f64, f64)> + use<'_> {
         let abilities = &self.abilities;
         let k = self.way.atom(self.at.max(1e-12));
         let reach = self.at + 2.0 * abilities.braking(abilities.speed);
-        let ahead = (k + 1..self.way.atoms.len()).take_while(|&next| self.way.offsets[next] <= reach);
-        let slower = ahead.filter(|&next| self.way.speeds[next] < self.way.speeds[k]);
-        slower.map(|next| (self.way.offsets[next] - self.at, self.way.speeds[next])).next()
+        let ahead = (k + 1..self.way.atoms.len()).take_while(move |&next| self.way.offsets[next] <= reach);
+        let slower = ahead.filter(move |&next| self.way.speeds[next] < self.way.speeds[k]);
+        slower.map(move |next| (self.way.offsets[next] - self.at, self.way.speeds[next]))
     }
 
     /// Takes another way; the first `before` metres of the old way are cut off.
@@ -256,7 +256,7 @@ fn pace(
     speed: f64,
     limit: f64,
     left: f64,
-    slower: Option<(f64, f64)>,
+    slower: impl Iterator<Item = (f64, f64)>,
     step: f64,
     abilities: &KinematicLimits,
 ) -> [(f64, f64); 2] {
@@ -278,7 +278,7 @@ fn pace(
         -half + (half * half + 2.0 * braking * (left - 0.5 * speed * step) + then * then).max(0.0).sqrt()
     };
     let mut wanted = limit.min(fastest(left, 0.0));
-    if let Some((distance, then)) = slower {
+    for (distance, then) in slower {
         wanted = wanted.min(fastest(distance, then).max(then));
     }
     let to = wanted.clamp((speed - change).max(0.0), speed + change).max(0.0);

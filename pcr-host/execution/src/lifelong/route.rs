@@ -116,6 +116,24 @@ impl Route {
         cut
     }
 
+    /// Takes the speeds that the edges have now. Returns whether that changes its times; turns and stops take as long as before.
+    pub(super) fn retime(&mut self, site: &RouteGraph) -> bool {
+        let mut later = 0.0;
+        let mut is_other = false;
+        for (k, &atom) in self.atoms.iter().enumerate() {
+            self.times[k] += later;
+            let speed = site.atoms[atom].speed;
+            if speed != self.speeds[k] {
+                let length = self.offsets[k + 1] - self.offsets[k];
+                later += length / speed - length / self.speeds[k];
+                self.speeds[k] = speed;
+                is_other = true;
+            }
+        }
+        self.times[self.atoms.len()] += later;
+        is_other
+    }
+
     pub(super) fn length(&self) -> f64 {
         self.offsets[self.atoms.len()]
     }

@@ -81,6 +81,13 @@ impl RouteFinder {
         Self { abilities, times, after, before, left: RefCell::default(), goals: RefCell::default(), found }
     }
 
+    /// Takes the speeds that the edges have now.
+    pub(super) fn retime(&mut self, site: &RouteGraph) {
+        self.times = site.atoms[..site.edges].iter().map(|atom| atom.length / atom.speed).collect();
+        self.left.get_mut().clear();
+        self.goals.get_mut().clear();
+    }
+
     /// Computes the times to these goals now, if there is room for all of them.
     pub(super) fn warm(&self, site: &RouteGraph, goals: &[usize]) {
         if goals.len() * self.times.len() * size_of::<f32>() <= ROOM {

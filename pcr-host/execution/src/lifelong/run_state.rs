@@ -153,7 +153,7 @@ impl LifelongState {
             time: TimeShares::default(),
         };
         Ok(Self {
-            world: WorldChanges::new(changes, layout_used, count, site.atoms.len()),
+            world: WorldChanges::new(changes, layout_used, count, &site),
             book: RegionTable::new(&site, &robots),
             locks: RouteReservations::new(count),
             network,

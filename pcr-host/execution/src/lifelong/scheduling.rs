@@ -174,7 +174,7 @@ impl LifelongState {
     }
 
     /// Searches another way and other orders for a robot that waits on its way, with which all together are expected to arrive sooner.
-    fn review(&mut self, robot: usize, now: f64) {
+    pub(super) fn review(&mut self, robot: usize, now: f64) {
         /// Time that has to be gained in all \[s\].
         const GAIN: f64 = 1.0;
         let Some(goal) = self.missions[robot].map(|mission| mission.goal) else { return };

@@ -6,25 +6,32 @@ use pcr_formats::import::Layout;
 use pcr_formats::missions::{ClosedElement, SiteChanges};
 use serde::Serialize;
 
-/// A closure, and what became of the vehicles on whose routes it was when it began.
+/// A closure or a limit of the speed, and what became of the vehicles on whose routes it was when it began. A vehicle can be in several lists:
+/// one that drives through and would have come back gets another route.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct ClosureEntry {
     /// The edge, if it is one.
     pub edge: Option<String>,
     /// The node, if it is one.
     pub node: Option<String>,
+    /// The zone, if it is one.
+    pub zone: Option<String>,
+    /// The largest speed there \[m/s\], if it is limited and open.
+    pub speed: Option<f64>,
     /// From when \[s\].
     pub at: f64,
     /// Until when \[s\]; none: for ever.
     pub until: Option<f64>,
     /// Whether it began before the run was over.
     pub begun: bool,
-    /// Vehicles that were on it, or too near to stop before it, and drove through.
+    /// Vehicles that were on it, or too near to stop before it, and drove through; of a limit: faster than it until they had braked.
     pub through: Vec<String>,
     /// Vehicles that could stop before it, and got another route to their goals.
     pub rerouted: Vec<String>,
     /// Vehicles that could stop before it, and had to wait there or elsewhere.
     pub waited: Vec<String>,
+    /// Vehicles that go on over what is limited, slower than before.
+    pub slowed: Vec<String>,
     /// Tasks to which no route led because of it.
     pub unreachable: Vec<UnreachableEntry>,
 }
@@ -90,19 +97,24 @@ pub(crate) fn entries(
         result.unreachable.iter().map(entry).collect()
     };
     let closures = changes.closures.iter().zip(&results.closures).map(|(it, result)| {
-        let (edge, node) = match it.element {
-            ClosedElement::Edge(edge) => (Some(layout.edges[edge].id.to_string()), None),
-            ClosedElement::Node(node) => (None, Some(layout.nodes[node].id.to_string())),
-        };
+        let (mut edge, mut node, mut zone) = (None, None, None);
+        match it.element {
+            ClosedElement::Edge(place) => edge = Some(layout.edges[place].id.to_string()),
+            ClosedElement::Node(place) => node = Some(layout.nodes[place].id.to_string()),
+            ClosedElement::Zone(place) => zone = Some(layout.zones[place].id.clone()),
+        }
         ClosureEntry {
             edge,
             node,
+            zone,
+            speed: it.speed,
             at: it.at,
             until: it.until,
             begun: result.is_begun,
             through: named(result, ChangeEffect::Through),
             rerouted: named(result, ChangeEffect::Rerouted),
             waited: named(result, ChangeEffect::Waits),
+            slowed: named(result, ChangeEffect::Slowed),
             unreachable: unreachable(result),
         }
     });

@@ -1,7 +1,8 @@
 //! Changes of the site during a run: what is closed, which robots are stranded, and what each change did.
 
 use super::robot_mission::RobotMission;
-use pcr_formats::import::Layout;
+use super::route_graph::RouteGraph;
+use pcr_formats::import::{Layout, LayoutZone};
 use pcr_formats::missions::{ClosedElement, SiteChanges};
 
 /// What a change did to a vehicle.
@@ -9,10 +10,12 @@ use pcr_formats::missions::{ClosedElement, SiteChanges};
 pub enum ChangeEffect {
     /// It was on the closed element, or too near to stop before it.
     Through,
-    /// It could stop before it, and got another route.
+    /// It could stop before it, or before another closed element behind it, and got another route.
     Rerouted,
     /// It could stop before it, and went elsewhere or stopped, and waits.
     Waits,
+    /// It goes on over what is limited, slower than before.
+    Slowed,
 }
 
 /// Tasks that could not be done because of a change.
@@ -72,6 +75,8 @@ pub(super) struct WorldChanges {
     pub(super) present: Vec<ChangeId>,
     /// For each atom by how many closures it is closed.
     pub(super) closed: Vec<u16>,
+    /// For each edge in its directions the largest speed on it without limits of closures \[m/s\].
+    pub(super) usual_speeds: Vec<f64>,
     /// For each robot the time until which it is broken down \[s\].
     pub(super) stranded: Vec<f64>,
     /// For each robot the mission that it cannot do while the present changes last.
@@ -81,22 +86,26 @@ pub(super) struct WorldChanges {
     /// Names of the nodes and edges of the layout. Pieces of an edge have the name of the whole.
     pub(super) nodes: Vec<String>,
     pub(super) edges: Vec<String>,
+    /// The zones of the layout.
+    pub(super) zones: Vec<LayoutZone>,
 }
 
 impl WorldChanges {
-    pub(super) fn new(changes: &SiteChanges, layout: &Layout, robots: usize, atoms: usize) -> Self {
+    pub(super) fn new(changes: &SiteChanges, layout: &Layout, robots: usize, site: &RouteGraph) -> Self {
         let records = |count: usize| vec![ChangeRecord::default(); count];
         Self {
             closures: records(changes.closures.len()),
             breakdowns: records(changes.breakdowns.len()),
             changes: changes.clone(),
             present: Vec::new(),
-            closed: vec![0; atoms],
+            closed: vec![0; site.atoms.len()],
+            usual_speeds: site.atoms[..site.edges].iter().map(|atom| atom.speed).collect(),
             stranded: vec![0.0; robots],
             suspended: vec![None; robots],
             next_review: 0.0,
             nodes: layout.nodes.iter().map(|node| node.id.to_string()).collect(),
             edges: layout.edges.iter().map(|edge| edge.id.to_string()).collect(),
+            zones: layout.zones.clone(),
         }
     }
 
@@ -160,9 +169,34 @@ impl WorldChanges {
         self.record(change).lose(UnreachableTask { robot, node, at, tasks: 1, is_given_up });
     }
 
-    /// Returns whether a closure closes an edge of the layout.
-    pub(super) fn is_of(&self, element: ClosedElement, edge: usize) -> bool {
-        matches!(element, ClosedElement::Edge(closed) if self.edges[closed] == self.edges[edge])
+    /// Whether an edge of the layout is what a closure names, or a piece of it, or is in it.
+    pub(super) fn has_edge(&self, element: ClosedElement, edge: usize) -> bool {
+        let is_piece = |&whole: &usize| self.edges[whole] == self.edges[edge];
+        match element {
+            ClosedElement::Edge(closed) => is_piece(&closed),
+            ClosedElement::Node(_) => false,
+            ClosedElement::Zone(zone) => self.zones[zone].edges.iter().any(is_piece),
+        }
+    }
+
+    /// Whether a node of the layout is what a closure names, or is in it.
+    pub(super) fn has_node(&self, element: ClosedElement, node: usize) -> bool {
+        match element {
+            ClosedElement::Edge(_) => false,
+            ClosedElement::Node(closed) => closed == node,
+            ClosedElement::Zone(zone) => self.zones[zone].nodes.contains(&node),
+        }
+    }
+
+    /// The element and the speed of a change that limits the speed and closes nothing.
+    pub(super) fn limit(&self, change: ChangeId) -> Option<(ClosedElement, f64)> {
+        match change {
+            ChangeId::Closure(k) => {
+                let closure = self.changes.closures[k];
+                Some((closure.element, closure.speed?))
+            }
+            ChangeId::Breakdown(_) => None,
+        }
     }
 
     /// Returns whether a robot is broken down.

@@ -200,6 +200,73 @@ fn closed_edges_are_left_driven_round_or_waited_for() {
     assert_eq!(lost(&early), []);
 }
 
+/// 20 m straight on and 10 m more; the speed on the first edge is limited.
+#[test]
+fn a_limit_of_the_speed_holds_from_its_time_on() {
+    let imported = site(&[[0.0, 0.0], [20.0, 0.0], [30.0, 0.0]], &two_way(&[[0, 1], [1, 2]]));
+    let run = |closure: &str| {
+        let fleet = r#"{"kind": "vehicle", "id": "a", "start": 0, "speed": 1.0, "acceleration": 0.5}
+            {"id": "m", "to": 2}"#;
+        report(&imported, &format!("{fleet}\n{closure}"))
+    };
+    let effects = |report: &MissionsReport| {
+        let it = &report.closures[0];
+        [&it.through, &it.slowed, &it.rerouted, &it.waited].map(Vec::len)
+    };
+    let time = |report: &MissionsReport| finish(report, "m").expect("it is done");
+    let free = time(&run(""));
+    assert!((free - 32.0).abs() < 0.2, "{free}");
+    // From the beginning on: 20 m at 0.2 m/s instead of 1 m/s.
+    let whole = run(r#"{"kind": "closure", "edge": 100, "speed": 0.2, "at": 0}"#);
+    assert!((time(&whole) - (100.0 + 12.0)).abs() < 3.0 && effects(&whole) == [0; 4], "{whole:?}");
+    // On its way: from 9 m on, of which it needs 0.96 m to brake.
+    let late = run(r#"{"kind": "closure", "edge": 100, "speed": 0.2, "at": 10}"#);
+    assert!((time(&late) - (11.6 + 10.04 / 0.2 + 12.0)).abs() < 3.0, "{late:?}");
+    assert_eq!(effects(&late), [1, 1, 0, 0], "{late:?}");
+    // For a while: 30 s at 0.2 m/s are 6 m.
+    let passing = run(r#"{"kind": "closure", "edge": 100, "speed": 0.2, "at": 10, "until": 40}"#);
+    assert!((time(&passing) - (free + 24.0)).abs() < 3.0, "{passing:?}");
+    // Before it and able to brake: at the node it has the limit.
+    let ahead = run(r#"{"kind": "closure", "edge": 102, "speed": 0.2, "at": 10}"#);
+    assert!((time(&ahead) - (20.0 + 2.0 + 50.0)).abs() < 3.0 && effects(&ahead) == [0, 1, 0, 0], "{ahead:?}");
+    // A limit above what it drives changes nothing.
+    let high = run(r#"{"kind": "closure", "edge": 100, "speed": 3, "at": 5}"#);
+    assert!((time(&high) - free).abs() < 1e-9 && effects(&high) == [0; 4], "{high:?}");
+}
+
+#[test]
+fn a_limit_of_the_speed_sends_vehicles_another_way() {
+    let fleet = r#"{"kind": "vehicle", "id": "a", "start": 4}
+        {"id": "m", "to": 5}"#;
+    let limited = |what: &str| report(&square(), &format!("{fleet}\n{{\"kind\": \"closure\", {what}}}"));
+    // The lower side of the square is 10 m; round the square it is 30 m.
+    let round = limited(r#""edge": 100, "speed": 0.05, "at": 1"#);
+    assert!(round.closures[0].rerouted == ["a"] && round.vehicles[0].length > 30.0, "{round:?}");
+    let on_it = limited(r#""edge": 100, "speed": 0.6, "at": 1"#);
+    assert!(on_it.closures[0].slowed == ["a"] && on_it.vehicles[0].length < 17.0, "{on_it:?}");
+}
+
+/// The vehicle is on the first of two closed edges, and the second one is on its route.
+#[test]
+fn who_drives_through_and_gets_another_route_is_told_as_both() {
+    let mut imported = square();
+    let edges = [100, 102].map(|id| {
+        imported.layout.edges.iter().position(|edge| edge.id.to_string() == id.to_string()).expect("an edge")
+    });
+    imported.layout.zones =
+        vec![pcr_formats::import::LayoutZone { id: "south".into(), nodes: Vec::new(), edges: edges.to_vec() }];
+    let both = report(
+        &imported,
+        r#"{"kind": "vehicle", "id": "a", "start": 4}
+        {"id": "m", "to": 6}
+        {"kind": "closure", "zone": "south", "at": 5}"#,
+    );
+    let it = &both.closures[0];
+    assert_eq!((it.zone.as_deref(), &it.edge), (Some("south"), &None));
+    assert!(both.is_sound(), "{both:?}");
+    assert!(it.through == ["a"] && it.rerouted == ["a"], "{both:?}");
+}
+
 #[test]
 fn vehicles_that_break_down_are_obstacles() {
     let imported = square();

@@ -16,18 +16,29 @@ pub(super) fn site_changes(
         ids => printable(&ids.join(", ")).to_string(),
     };
     for it in closures {
-        let what = match (&it.edge, &it.node) {
-            (Some(edge), _) => format!("edge {edge}"),
-            (None, node) => format!("node {}", node.as_deref().unwrap_or_default()),
-        };
-        let what = printable(&what);
+        let names = [("edge", &it.edge), ("node", &it.node), ("zone", &it.zone)];
+        let named = names.iter().find_map(|(kind, name)| Some(format!("{kind} {}", name.as_deref()?)));
+        let what = printable(&named.unwrap_or_default()).to_string();
+        let done = it.speed.map_or_else(|| "closed".to_owned(), |speed| format!("limited to {speed} m/s"));
         if !it.begun {
-            writeln!(out, "{what} would have been closed from {} s, after the end", it.at)?;
+            writeln!(out, "{what} would have been {done} from {} s, after the end", it.at)?;
+            continue;
+        }
+        if it.speed.is_some() {
+            writeln!(
+                out,
+                "{what} {done} from {} s {}: {} slowed down, {} could not brake before it, {} went another way",
+                it.at,
+                until(it.until),
+                list(&it.slowed),
+                list(&it.through),
+                list(&it.rerouted)
+            )?;
             continue;
         }
         writeln!(
             out,
-            "{what} closed from {} s {}: {} drove through, {} went another way, {} waited",
+            "{what} {done} from {} s {}: {} drove through, {} went another way, {} waited",
             it.at,
             until(it.until),
             list(&it.through),

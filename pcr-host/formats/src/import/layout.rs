@@ -112,6 +112,17 @@ impl LayoutEdge {
     }
 }
 
+/// Nodes and edges that a file names together: a block of openTCS, a mutex group of Open-RMF.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct LayoutZone {
+    /// Its name in the file, unique.
+    pub id: String,
+    /// Places of its nodes in [`Layout::nodes`].
+    pub nodes: Vec<usize>,
+    /// Places of its edges in [`Layout::edges`].
+    pub edges: Vec<usize>,
+}
+
 /// Nodes and edges.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Layout {
@@ -123,6 +134,8 @@ pub struct Layout {
     pub nodes: Vec<LayoutNode>,
     /// The edges.
     pub edges: Vec<LayoutEdge>,
+    /// The zones, in the order in which the file first names them.
+    pub zones: Vec<LayoutZone>,
     /// Other ids of nodes, with their places: names of ends of edges that are one node.
     pub aliases: Vec<(String, usize)>,
     /// Types of vehicles that the file tells apart.
@@ -148,6 +161,15 @@ impl Layout {
     pub fn one_speed(&self) -> Result<(), ImportError> {
         let problem = "its vehicle types have different speeds; say which one drives, --vehicle TYPE";
         self.of_speeds.as_ref().map_or(Ok(()), |edge| Err(ImportError::new(format!("edge {edge}: {problem}"))))
+    }
+
+    /// The zone of this name, which is added if there is none.
+    pub(crate) fn zone_called(&mut self, name: &str) -> &mut LayoutZone {
+        let place = self.zones.iter().position(|zone| zone.id == name).unwrap_or(self.zones.len());
+        if place == self.zones.len() {
+            self.zones.push(LayoutZone { id: name.to_owned(), ..LayoutZone::default() });
+        }
+        &mut self.zones[place]
     }
 
     /// Places of the node of this id or of this other id or, if there is none, of those of this name.

@@ -17,6 +17,7 @@ use crate::footprint::Footprint;
 use crate::plane_geometry::distance;
 use crate::scenario::PlacedSegment;
 use drawn::{Bend, VisualProperties};
+use std::collections::HashMap;
 use std::f64::consts::FRAC_PI_2;
 
 pub(super) use vehicles::vehicles;
@@ -220,14 +221,33 @@ pub(super) fn read(
         vehicles::limit_backward(root, &mut edges, warnings)?;
     }
     let vehicles = children(root, "vehicle").filter_map(|vehicle| vehicle.attribute("name"));
-    Ok(Layout {
+    let mut layout = Layout {
         vehicles: vehicles.map(crate::scenario::label).filter(|name| !name.is_empty()).collect(),
         name: root.attribute("name").unwrap_or_default().to_owned(),
         levels: vec![String::new()],
         nodes: nodes.into_list(),
         edges,
         ..Layout::default()
-    })
+    };
+    read_blocks(root, &mut layout);
+    Ok(layout)
+}
+
+/// Adds the blocks as zones. A member that is neither a point nor a path, such as a location, is no place of a vehicle.
+fn read_blocks(root: roxmltree::Node<'_, '_>, layout: &mut Layout) {
+    let places = |ids: Vec<String>| -> HashMap<String, usize> {
+        ids.into_iter().enumerate().map(|(place, id)| (id, place)).collect()
+    };
+    let points = places(layout.nodes.iter().map(|node| node.id.to_string()).collect());
+    let paths = places(layout.edges.iter().map(|edge| edge.id.to_string()).collect());
+    for block in children(root, "block") {
+        let Some(name) = block.attribute("name").filter(|name| !name.is_empty()) else { continue };
+        let zone = layout.zone_called(name);
+        for member in children(block, "member").filter_map(|member| member.attribute("name")) {
+            zone.edges.extend(paths.get(member));
+            zone.nodes.extend(points.get(member));
+        }
+    }
 }
 
 /// The name of a point or path, without which blocks, vehicles and routes cannot name it.

@@ -321,7 +321,13 @@ impl RmfLevel<'_> {
                 level,
                 point: at,
             });
-            self.layout.nodes.len() - 1
+            let place = self.layout.nodes.len() - 1;
+            let list = self.source.object.get("vertices").and_then(JsonNode::as_array);
+            let parameters = list.and_then(|list| list.get(vertex)?.element(if self.graph { 2 } else { 4 }));
+            if let Some(group) = mutex(parameters) {
+                self.layout.zone_called(&group).nodes.push(place);
+            }
+            place
         })
     }
 
@@ -392,6 +398,10 @@ impl RmfLevel<'_> {
             speed: [speed.filter(|speed| *speed < 1e6); 2],
             ..LayoutEdge::new(ElementId::Text(format!("{}/{k}", self.source.name)), [from, to], curve)
         });
+        if let Some(group) = mutex(parameters) {
+            let edge = self.layout.edges.len() - 1;
+            self.layout.zone_called(&group).edges.push(edge);
+        }
         Ok(match () {
             () if !straight => Some((WarningCode::ZeroLength, "its length is 0")),
             () if both_ways && self.graph => {
@@ -400,4 +410,11 @@ impl RmfLevel<'_> {
             () => None,
         })
     }
+}
+
+/// The mutex group of a vertex or lane with these parameters. Adapters accept any scalar as its name; without a text there is no group.
+fn mutex(parameters: Option<&JsonNode<'_>>) -> Option<String> {
+    let value = parameter(parameters, "mutex").filter(|value| !value.is_null())?;
+    let name = value.as_str().map_or_else(|| value.to_string(), str::to_owned);
+    Some(name).filter(|name| !name.is_empty())
 }

@@ -1,8 +1,11 @@
 //! Changes of a site while vehicles drive: closures and breakdowns.
 
 use super::records::Record;
-use super::{LATEST, MissionFileError, MissionSource, PlacedName, RecordKind, all_records, edge, node};
+use super::{LARGEST, LATEST, MissionFileError, MissionSource, PlacedName, RecordKind, all_records, edge, node};
 use crate::import::Layout;
+
+/// Least speed to which a closure may limit vehicles \[m/s\].
+const SLOWEST: f64 = 1e-3;
 
 /// The element of a layout that is closed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -11,13 +14,17 @@ pub enum ClosedElement {
     Edge(usize),
     /// A node of the layout, by its index: nobody comes to it.
     Node(usize),
+    /// A zone of the layout, by its index: all its edges and nodes.
+    Zone(usize),
 }
 
-/// An edge or a node that is closed for some time.
+/// An edge, a node or a zone that is closed for some time, or where vehicles are slower.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Closure {
     /// What is closed.
     pub element: ClosedElement,
+    /// The largest speed there \[m/s\], if it is open and limited; `None`: nobody may enter.
+    pub speed: Option<f64>,
     /// Time from which on it is closed \[s\].
     pub at: f64,
     /// Time until which it is closed \[s\]; `None`: for ever.
@@ -91,16 +98,40 @@ impl SiteChanges {
 }
 
 fn closure(record: &Record<'_>, layout: &Layout) -> Result<Closure, MissionFileError> {
-    let element = match (record.text("edge")?, record.text("node")?) {
-        (Some(name), None) => ClosedElement::Edge(edge(layout, &name)?),
-        (None, Some(name)) => ClosedElement::Node(node(layout, &name)?),
+    let element = match (record.text("edge")?, record.text("node")?, record.text("zone")?) {
+        (Some(name), None, None) => ClosedElement::Edge(edge(layout, &name)?),
+        (None, Some(name), None) => ClosedElement::Node(node(layout, &name)?),
+        (None, None, Some(name)) => ClosedElement::Zone(zone(layout, &name)?),
         _ => {
-            let problem = "a closure is of an edge or of a node";
+            let problem = "a closure is of an edge, of a node or of a zone";
             return Err(MissionFileError { position: record.position, problem: problem.into() });
         }
     };
+    let speed = record.number("speed", SLOWEST, LARGEST)?;
+    let has_edges = match element {
+        ClosedElement::Edge(_) => true,
+        ClosedElement::Node(_) => false,
+        ClosedElement::Zone(zone) => !layout.zones[zone].edges.is_empty(),
+    };
+    if speed.is_some() && !has_edges {
+        return Err(record.wrong("speed", "a limit is of an edge, or of a zone with edges".into()));
+    }
     let (at, until) = times(record)?;
-    Ok(Closure { element, at, until })
+    Ok(Closure { element, speed, at, until })
+}
+
+/// The zone of a name, some of which has to be on the level of the fleet.
+fn zone(layout: &Layout, (name, position): &PlacedName) -> Result<usize, MissionFileError> {
+    let wrong = |problem: String| MissionFileError { position: *position, problem };
+    let found = layout.zones.iter().position(|zone| zone.id == *name);
+    let place = found.ok_or_else(|| {
+        wrong(format!("there is no zone {name} in the layout; zones are blocks of openTCS and mutex groups of Open-RMF"))
+    })?;
+    let zone = &layout.zones[place];
+    let level = layout.largest_level();
+    let is_there = zone.nodes.iter().any(|&node| layout.level_of(node) == level)
+        || zone.edges.iter().any(|&edge| layout.is_on(&layout.edges[edge], level));
+    is_there.then_some(place).ok_or_else(|| wrong(format!("nothing of zone {name} is on the level of the missions")))
 }
 
 /// The times of a closure or breakdown.

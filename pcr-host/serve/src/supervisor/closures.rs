@@ -1,4 +1,5 @@
-//! Areas that a person has closed: nobody gets authority into them, and no mission through them is admitted.
+//! Areas that a person has closed: nobody gets authority into them, and no mission through them is admitted. Where only the speed is limited,
+//! robots are told on which lengths of their paths.
 //!
 //! An area is all that is within a distance of a path, so it can be an edge, a node, or a lane of any width. Whoever is in it for certain
 //! drives on. Whoever holds authority into it keeps that, and is stopped: if it comes to rest before the area it waits there, and if it cannot,
@@ -10,16 +11,21 @@ use crate::closed_area::ClosedArea;
 use crate::journal_entry::JournalEntry;
 use crate::owned_path::{FAR, OwnedPath};
 use crate::request_error::RequestError;
+use crate::event::SupervisorEvent;
 use crate::robot::{ROOM, SupervisedRobot};
 use pcr_core::{Ecm, Interval};
 use pcr_formats::scenario::label;
 use pcr_planning::fleet::ConvexBody;
 use serde::Serialize;
 
+/// Least and largest speed to which an area may be limited \[m/s\].
+const SLOWEST: f64 = 1e-3;
+const FASTEST: f64 = 1e4;
+
 /// What an area that is being closed means to the robots there.
 #[derive(Clone, Debug, Default, PartialEq, Serialize)]
 pub struct ClosureImpact {
-    /// Robots that are in it, and drive on.
+    /// Robots that are in it, and drive on: with a limited speed as slow as that as soon as they have braked.
     pub through: Vec<String>,
     /// Robots that hold authority into it, and are stopped if they move.
     pub stopped: Vec<String>,
@@ -31,7 +37,18 @@ pub struct ClosureImpact {
 #[derive(Clone, Debug)]
 pub(super) struct ClosedPath {
     pub(super) area: ClosedArea,
-    course: OwnedPath,
+    courses: Vec<OwnedPath>,
+}
+
+/// A part of a robot's path on which its speed is limited.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct SpeedLimit {
+    /// Name of the closure.
+    pub closure: String,
+    /// Lengths of the path between which it holds \[m\].
+    pub length: [f64; 2],
+    /// Largest speed there \[m/s\].
+    pub speed: f64,
 }
 
 impl ClosedPath {
@@ -42,17 +59,31 @@ impl ClosedPath {
         if !(area.radius > 0.0 && area.radius <= FAR) {
             return Err(RequestError::invalid(format!("radius: above 0, up to {FAR} m is allowed")));
         }
-        let course = OwnedPath::new(area.start, area.path.clone()).map_err(RequestError::invalid)?;
-        course.motion(&ConvexBody::Disc(area.radius)).map_err(RequestError::invalid)?;
-        Ok(Self { area, course })
+        if let Some(speed) = area.speed.filter(|speed| !(SLOWEST..=FASTEST).contains(speed)) {
+            return Err(RequestError::invalid(format!("speed: {speed} is out of range; allowed is {SLOWEST} to {FASTEST}")));
+        }
+        let courses = area.courses().map_err(RequestError::invalid)?;
+        for course in &courses {
+            course.motion(&ConvexBody::Disc(area.radius)).map_err(RequestError::invalid)?;
+        }
+        Ok(Self { area, courses })
     }
 
     /// The lengths of a path on which a body touches the area; `None` if they cannot be computed.
     pub(super) fn lengths(&self, course: &OwnedPath, body: &ConvexBody) -> Option<Vec<Interval<f64>>> {
         let disc = ConvexBody::Disc(self.area.radius);
-        let fleet = [course.motion(body).ok()?, self.course.motion(&disc).ok()?];
-        let ecm = Ecm::grown(&fleet).ok()?;
-        Some(ecm.pair(&fleet, 0, 1).ok()?.map(|region| region.length()).collect())
+        let mut lengths = Vec::new();
+        for own in &self.courses {
+            let fleet = [course.motion(body).ok()?, own.motion(&disc).ok()?];
+            let ecm = Ecm::grown(&fleet).ok()?;
+            lengths.extend(ecm.pair(&fleet, 0, 1).ok()?.map(|region| region.length()));
+        }
+        Some(lengths)
+    }
+
+    /// Whether nobody may enter.
+    fn is_shut(&self) -> bool {
+        self.area.speed.is_none()
     }
 
     /// The length of a robot's path at which it would come into the area, from where it is; `None` if it never does, or if it is in it.
@@ -89,6 +120,7 @@ impl Supervisor {
             None => {
                 self.entries.push(JournalEntry::Closed(closed.area.clone()));
                 self.closures.insert(closed.area.name.clone(), closed.clone());
+                self.closure_revision += 1;
                 self.hazards = true;
             }
         }
@@ -96,7 +128,7 @@ impl Supervisor {
         for robot in &self.robots {
             let list = match closed.entry(robot) {
                 _ if closed.contains(robot) => &mut impact.through,
-                Some(entry) if entry < robot.notified_limit => &mut impact.stopped,
+                Some(entry) if closed.is_shut() && entry < robot.notified_limit => &mut impact.stopped,
                 Some(_) => &mut impact.before,
                 None => continue,
             };
@@ -115,6 +147,7 @@ impl Supervisor {
             return Ok(false);
         }
         self.entries.push(JournalEntry::Opened { closure: name.into() });
+        self.closure_revision += 1;
         self.hazards = true;
         // Missions that have waited for it are tried now.
         self.tries.values_mut().for_each(super::admission::AdmissionRetry::hurry);
@@ -132,17 +165,64 @@ impl Supervisor {
             Some(lengths) => lengths.iter().any(|length| length.lo > at && length.lo >= told - ROOM),
             None => true,
         };
-        self.closures.values().find(leads_into).map(|closed| closed.area.name.as_str())
+        self.closures.values().filter(|closed| closed.is_shut()).find(leads_into).map(|closed| closed.area.name.as_str())
     }
 
     /// Limits because of closed areas.
     pub(super) fn closed_areas(&self, limits: &mut [AlarmLimit]) {
-        for (index, closed) in self.closures.values().enumerate() {
+        for (index, closed) in self.closures.values().enumerate().filter(|(_, closed)| closed.is_shut()) {
             for (robot, limit) in self.robots.iter().zip(limits.iter_mut()) {
                 if let Some(entry) = closed.entry(robot) {
                     limit.lower(entry - ROOM, LimitCause::Closed(index));
                 }
             }
+        }
+    }
+
+    /// The limits of the speed on a path, by name and length. Where it cannot be computed, all of the path is limited.
+    pub(crate) fn speed_limits(&self, course: &OwnedPath, body: &ConvexBody) -> Vec<SpeedLimit> {
+        let limits = self.closures.values().filter_map(|closed| Some((closed, closed.area.speed?)));
+        let limits = limits.flat_map(|(closed, speed)| {
+            let all = || vec![Interval::new(0.0, course.length())];
+            let lengths = closed.lengths(course, body).unwrap_or_else(all);
+            let limit = move |length: Interval<f64>| SpeedLimit {
+                closure: closed.area.name.clone(),
+                length: [length.lo.max(0.0), length.hi.min(course.length())],
+                speed,
+            };
+            lengths.into_iter().map(limit)
+        });
+        limits.collect()
+    }
+
+    /// A number that changes whenever an area is closed or opened.
+    pub(crate) fn closure_revision(&self) -> u64 {
+        self.closure_revision
+    }
+
+    /// Whether the speed is limited anywhere.
+    pub(crate) fn limits_speed(&self) -> bool {
+        self.closures.values().any(|closed| !closed.is_shut())
+    }
+
+    /// Tells robots where their speed is limited, before they get any authority there: on a new path, and when a limit begins or ends.
+    pub(super) fn tell_speed_limits(&mut self) {
+        let limits_any = self.limits_speed();
+        for place in 0..self.robots.len() {
+            let robot = &self.robots[place];
+            let known = (robot.path, self.closure_revision);
+            if robot.limits_at == Some(known) || !limits_any && robot.speed_limits.is_empty() {
+                continue;
+            }
+            let limits = self.speed_limits(&robot.course, &robot.body);
+            let is_new_path = robot.limits_at.is_none_or(|(path, _)| path != robot.path);
+            let is_news = if is_new_path { !limits.is_empty() } else { limits != robot.speed_limits };
+            if is_news {
+                let (robot, path, limits) = (robot.name.clone(), robot.path, limits.clone());
+                self.events.push(SupervisorEvent::Limits { robot, path, limits });
+            }
+            let robot = &mut self.robots[place];
+            (robot.speed_limits, robot.limits_at) = (limits, Some(known));
         }
     }
 }

@@ -252,6 +252,7 @@ impl Vda5050Bridge {
         let is_known = self.note_unplaced(supervisor, now);
         for &place in &touched {
             let lane = &mut self.lanes[place];
+            lane.follow_limits(supervisor);
             lane.pause(supervisor, now);
             if is_known {
                 lane.release(supervisor, now);
@@ -287,7 +288,10 @@ impl Vda5050Bridge {
         let unplaced = supervisor.unplaced().take(NOTICES);
         let unplaced = unplaced.map(|it| (NoticeKind::Unplaced, [it.0.to_owned(), it.1.to_owned()]));
         let closed = supervisor.closures().take(NOTICES);
-        let closed = closed.map(|area| (NoticeKind::Closed, [area.name.clone(), "is closed".to_owned()]));
+        let closed = closed.map(|area| match area.speed {
+            None => (NoticeKind::Closed, [area.name.clone(), "is closed".to_owned()]),
+            Some(speed) => (NoticeKind::Limited, [area.name.clone(), format!("limits the speed to {speed} m/s")]),
+        });
         let notices: Vec<(NoticeKind, [String; 2])> = unplaced.chain(closed).collect();
         if notices != self.notices && now.is_finite() && now >= self.noticed_at + PAUSE {
             self.noticed_at = now;

@@ -18,6 +18,7 @@ mod pause;
 mod recency;
 mod refused_orders;
 mod release;
+mod speed_limits;
 mod used_ids;
 mod vehicle_messages;
 
@@ -48,6 +49,8 @@ pub(crate) enum NoticeKind {
     Unplaced,
     /// A closed area.
     Closed,
+    /// An area in which the speed is limited.
+    Limited,
 }
 
 /// The configuration of a vehicle.

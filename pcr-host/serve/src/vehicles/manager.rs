@@ -6,9 +6,10 @@
 mod reorder;
 
 use super::edge_reservations::{EdgeReservations, MissionEdge, VehicleCoordination, to_line};
+use crate::journal_entry::{PageLane, PageLayout, PageNode};
 use crate::owned_path::{OwnedPath, PathElement, StartPose};
 use crate::setup_error::SetupError;
-use pcr_formats::import::{self, Layout, RouteStep, cheapest};
+use pcr_formats::import::{self, ElementId, Layout, RouteStep, cheapest};
 use pcr_formats::splitmix64::SplitMix64;
 use pcr_formats::vda5050::decode::{self, MessageLimits};
 use pcr_formats::vda5050::header::MessageHeader;
@@ -143,15 +144,28 @@ impl FleetManager {
         self
     }
 
-    /// The ways that it sends vehicles on.
-    pub fn lanes(&self) -> Vec<OwnedPath> {
-        let lane = |edge: &import::LayoutEdge| {
+    /// The ways that it sends vehicles on, and the nodes.
+    pub fn drawn(&self, name: String) -> PageLayout {
+        let zones = |is_in: &dyn Fn(&import::LayoutZone) -> bool| -> Vec<ElementId> {
+            let found = self.layout.zones.iter().filter(|zone| is_in(zone));
+            found.map(|zone| ElementId::Text(zone.id.clone())).collect()
+        };
+        let lane = |(place, edge): (usize, &import::LayoutEdge)| {
             let [[x, y], to] = edge.ends.map(|node| self.layout.position(node));
             let [dx, dy] = [to[0] - x, to[1] - y];
             let start = StartPose { x, y, heading: dy.atan2(dx) };
-            OwnedPath::new(start, vec![PathElement::Line { length: dx.hypot(dy) }]).ok()
+            let course = OwnedPath::new(start, vec![PathElement::Line { length: dx.hypot(dy) }]).ok()?;
+            Some(PageLane { course, edge: Some(edge.id.clone()), zones: zones(&|zone| zone.edges.contains(&place)) })
         };
-        self.layout.edges.iter().filter_map(lane).collect()
+        let node = |(place, node): (usize, &import::LayoutNode)| {
+            let [x, y] = node.point;
+            PageNode { node: node.id.clone(), x, y, zones: zones(&|zone| zone.nodes.contains(&place)) }
+        };
+        PageLayout {
+            name,
+            lanes: self.layout.edges.iter().enumerate().filter_map(lane).collect(),
+            nodes: self.layout.nodes.iter().enumerate().map(node).collect(),
+        }
     }
 
     /// Number of goals at which no vehicle stands and to which none drives.

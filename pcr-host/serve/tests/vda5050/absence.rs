@@ -153,14 +153,19 @@ impl Absence {
     }
 }
 
+/// A gate at x = 5 m, closed or with a limited speed.
+fn gate(speed: Option<f64>) -> ClosedArea {
+    let start = StartPose { x: 5.0, y: 0.0, heading: 0.0 };
+    ClosedArea { name: "gate".into(), start, path: Vec::new(), more: Vec::new(), radius: 0.5, of: None, speed }
+}
+
 /// A person closes an area by a line, and the manager and its vehicle see what follows.
 #[test]
 fn the_manager_is_told_what_is_closed_and_no_vehicle_is_released_into_it() {
     let mut own = Absence::new(None, &[]);
     own.supervisor.set_away("sim/2", true).unwrap();
     own.stands("1", [0.0, 0.0]);
-    let start = StartPose { x: 5.0, y: 0.0, heading: 0.0 };
-    own.supervisor.close(ClosedArea { name: "gate".into(), start, path: Vec::new(), radius: 0.5 }).unwrap();
+    own.supervisor.close(gate(None)).unwrap();
     own.order("1", "a", 0.0, 10.0);
     own.waits(3.0);
     let errors = own.told["1"]["errors"].as_array().unwrap();

@@ -9,6 +9,7 @@ mod dump;
 mod faults;
 mod following;
 mod lanes;
+mod limits;
 mod long;
 mod maps;
 mod outlines;

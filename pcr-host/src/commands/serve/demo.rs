@@ -42,7 +42,7 @@ impl BrokerDemo {
         log.write(LogLevel::Info, "broker", &[("port", &broker.port)]);
         let profiles = world.profiles.clone();
         let name = layout.file_stem().map_or_else(String::new, |name| name.to_string_lossy().into_owned());
-        let drawn = Drawn { name, lanes: world.manager.lanes() };
+        let drawn = world.manager.drawn(name);
         let mut demo = Self { broker, child, folder, interfaces, profiles, drawn, stop: Arc::default(), thread: None };
         let mut run = fleet::FleetRun::open(world, &demo.broker, &demo.interfaces, &crew, std::io::sink())?;
         let stop = demo.stop.clone();

@@ -63,6 +63,7 @@ impl VehicleAdapter {
             let (kind, reference) = match kind {
                 NoticeKind::Unplaced => ("waitsForVehicle", "vehicle"),
                 NoticeKind::Closed => ("closed", "closure"),
+                NoticeKind::Limited => ("limited", "closure"),
             };
             ErrorEntry::warning(kind, format!("{name} {why}"), &[(reference, name)])
         };

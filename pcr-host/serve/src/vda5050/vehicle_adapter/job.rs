@@ -2,9 +2,10 @@
 
 use super::super::order_path::OrderPath;
 use super::journal_notes::noted;
+use super::speed_limits;
 use crate::owned_path::StartPose;
 use crate::robot::SupervisedRobot;
-use crate::supervisor::JournalError;
+use crate::supervisor::{JournalError, SpeedLimit};
 use pcr_formats::vda5050::order::{NodePosition, OrderEdge, OrderNode};
 use pcr_formats::vda5050::order_state::OrderState;
 use pcr_formats::vda5050::state::State;
@@ -25,6 +26,9 @@ pub struct ReleasePoint {
     pub node: usize,
     /// Whether the stop is in the middle of the edge after that node.
     pub between: bool,
+    /// The limit of the speed with which the way up to it was released, because of areas \[m/s\].
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub speed: Option<f64>,
 }
 
 /// An order update that was sent.
@@ -81,6 +85,10 @@ pub struct ActiveOrder {
     pub(crate) lost_at: Option<f64>,
     /// Time since which the vehicle refuses what was sent last \[s\].
     pub refused: Option<f64>,
+    /// Where the speed is limited on the whole way.
+    pub(crate) limits: Vec<SpeedLimit>,
+    /// The revision of the closures and the way of which these are.
+    pub(crate) limits_at: Option<(u64, u64)>,
 }
 
 /// The part of the manager's order that is stored as a note.
@@ -100,7 +108,7 @@ pub(super) fn mission(held: &OrderState, node: usize) -> String {
 impl ActiveOrder {
     /// A new order for a vehicle that stands at the start of the way.
     pub(super) fn new(held: OrderState, way: OrderPath, version: String) -> Self {
-        let first = ReleasePoint { sequence: 0, length: way.node(0).unwrap_or(0.0), node: 0, between: false };
+        let first = ReleasePoint { sequence: 0, length: way.node(0).unwrap_or(0.0), node: 0, between: false, speed: None };
         Self {
             order: held,
             path: way,
@@ -116,6 +124,8 @@ impl ActiveOrder {
             cancelled: [f64::NEG_INFINITY; 2],
             lost_at: None,
             refused: None,
+            limits: Vec::new(),
+            limits_at: None,
         }
     }
 
@@ -274,7 +284,8 @@ impl ActiveOrder {
 
     /// The last stop that the vehicle has, or may have.
     pub(super) fn last(&self) -> ReleasePoint {
-        self.stops.last().copied().unwrap_or(ReleasePoint { sequence: 0, length: 0.0, node: 0, between: false })
+        let none = ReleasePoint { sequence: 0, length: 0.0, node: 0, between: false, speed: None };
+        self.stops.last().copied().unwrap_or(none)
     }
 
     /// Index of the stop with this sequence number.
@@ -328,7 +339,8 @@ impl ActiveOrder {
         }
     }
 
-    /// The edge, or part of an edge, between two stops, as it is sent to the vehicle.
+    /// The edge, or part of an edge, between two stops, as it is sent to the vehicle. Released parts have the limit of the speed with which they were
+    /// released.
     pub(super) fn edge(&self, [from, to]: [ReleasePoint; 2], released: bool) -> Option<OrderEdge> {
         let mut edge = self.order.edges.get(from.node)?.clone();
         (edge.sequence_id, edge.released) = (from.sequence + 1, released);
@@ -340,6 +352,7 @@ impl ActiveOrder {
         if from.between || to.between {
             edge.rest.remove("length");
         }
+        speed_limits::lower(&mut edge, if released { to.speed } else { self.limit_between(from.length, to.length) });
         Some(edge)
     }
 

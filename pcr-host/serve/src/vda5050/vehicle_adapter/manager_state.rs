@@ -174,7 +174,9 @@ impl VehicleAdapter {
 
     fn translated(&mut self, mut state: State) -> State {
         self.job.iter().for_each(|job| job.name_updates(&mut state.errors));
-        state.errors.extend(self.errors.iter().cloned().chain(self.elsewhere_error()).chain(self.notice_errors()));
+        let limits = self.limit_errors(&state);
+        let own = self.errors.iter().cloned().chain(self.elsewhere_error()).chain(self.notice_errors());
+        state.errors.extend(own.chain(limits));
         let Some(job) = self.job.as_ref().filter(|job| job.order.order_id == state.order_id) else { return state };
         let sent = job.sent.filter(|sent| sent.update == state.order_update_id).map(|sent| sent.manager);
         if let Some(manager) = job.received.acknowledged.map(|(_, manager)| manager).or(sent) {

@@ -107,7 +107,8 @@ impl ActiveOrder {
         let mut sequence = last.sequence;
         let mut push = |stops: &mut Vec<ReleasePoint>, length, node, between| {
             sequence += 2;
-            stops.push(ReleasePoint { sequence, length, node, between });
+            let from = stops.last().map_or(last.length, |stop| stop.length);
+            stops.push(ReleasePoint { sequence, length, node, between, speed: self.limit_between(from, length) });
         };
         let mut reached = last.node;
         for node in last.node + 1..=planned {
@@ -145,6 +146,7 @@ impl ActiveOrder {
                 length: self.path.node(node).unwrap_or(last.length),
                 node,
                 between: false,
+                speed: None,
             };
             stops.push(last);
         }

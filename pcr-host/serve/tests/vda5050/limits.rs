@@ -1,0 +1,82 @@
+//! Areas in which the speed is limited, and orders of vehicles.
+
+use crate::puppet::Puppet;
+use pcr_formats::vda5050::topics::TopicKind;
+use pcr_serve::closed_area::ClosedArea;
+use pcr_serve::owned_path::StartPose;
+use serde_json::{Value, json};
+
+/// A disc about a point of the way.
+fn slow(name: &str, x: f64, speed: f64) -> ClosedArea {
+    let start = StartPose { x, y: 0.0, heading: 0.0 };
+    ClosedArea { name: name.into(), start, path: Vec::new(), more: Vec::new(), radius: 0.5, of: None, speed: Some(speed) }
+}
+
+/// An order along nodes at 0, 10, 20 and 30 m; the third edge has a speed of its own.
+fn order() -> Value {
+    let node = |k: u64| {
+        json!({ "nodeId": format!("n{}", 2 * k), "sequenceId": 2 * k, "released": true, "actions": [],
+            "nodePosition": { "x": 10.0 * k as f64, "y": 0.0, "mapId": "map" } })
+    };
+    let edge = |k: u64| {
+        let mut edge = json!({ "edgeId": format!("e{k}"), "sequenceId": 2 * k + 1, "released": true, "actions": [],
+            "startNodeId": format!("n{}", 2 * k), "endNodeId": format!("n{}", 2 * k + 2) });
+        if k == 2 {
+            edge["maxSpeed"] = json!(0.3);
+        }
+        edge
+    };
+    let (nodes, edges): (Vec<Value>, Vec<Value>) = ((0..4).map(node).collect(), (0..3).map(edge).collect());
+    json!({ "orderId": "a", "orderUpdateId": 0, "nodes": nodes, "edges": edges })
+}
+
+/// The speeds of the edges in the last order that the vehicle got, by id.
+fn speeds(own: &Puppet) -> Vec<(String, Option<f64>)> {
+    let (_, last) = own.got.iter().rev().find(|(kind, _)| *kind == TopicKind::Order).expect("an order");
+    let edges = last["edges"].as_array().expect("edges").iter();
+    edges.map(|edge| (edge["edgeId"].as_str().expect("an id").to_owned(), edge["maxSpeed"].as_f64())).collect()
+}
+
+fn speed_of(own: &Puppet, edge: &str) -> Option<f64> {
+    speeds(own).iter().rev().find(|it| it.0 == edge).expect("the edge").1
+}
+
+fn errors(own: &Puppet, kind: &str) -> Vec<String> {
+    let errors = own.told["errors"].as_array().into_iter().flatten();
+    let found = errors.filter(|error| error["errorType"] == kind);
+    found.map(|error| error["errorDescription"].as_str().expect("a text").to_owned()).collect()
+}
+
+#[test]
+fn edges_that_are_not_released_get_the_limit_and_of_others_the_manager_is_told() {
+    let mut own = Puppet::new();
+    // Before the order: all of it is sent with the limit, also where the edge is slow already.
+    own.supervisor.close(slow("gate", 15.0, 0.5)).unwrap();
+    own.supervisor.close(slow("door", 25.0, 0.4)).unwrap();
+    own.manager(TopicKind::Order, order());
+    own.lasts(1.0);
+    assert_eq!([speed_of(&own, "e0"), speed_of(&own, "e1"), speed_of(&own, "e2")], [None, Some(0.5), Some(0.3)]);
+    assert_eq!(errors(&own, "limited"), ["door limits the speed to 0.4 m/s", "gate limits the speed to 0.5 m/s"]);
+    assert_eq!(errors(&own, "speedLimit"), Vec::<String>::new());
+    // It has the first edge, or a part of it: a limit there comes too late, and one on the others does not.
+    own.is_at("a", 0, 0, &[2], 0.0, true);
+    let orders = own.orders();
+    own.supervisor.close(slow("aisle", 3.0, 0.2)).unwrap();
+    own.supervisor.open("gate").unwrap();
+    own.supervisor.close(slow("gate", 15.0, 0.1)).unwrap();
+    own.lasts(2.0);
+    let told = "edge e0 was released before aisle limited the speed there to 0.2 m/s; the vehicle may be faster on it";
+    assert_eq!(errors(&own, "speedLimit"), [told], "{}", own.told);
+    assert!(own.orders() > orders, "{}", own.orders());
+    assert_eq!(speed_of(&own, "e1"), Some(0.1), "{:?}", speeds(&own));
+    // A restart keeps what the vehicle has.
+    own.restart();
+    own.lasts(2.0);
+    assert_eq!(errors(&own, "speedLimit"), [told], "{}", own.told);
+    // When it ends, nothing is left of it.
+    for name in ["aisle", "gate", "door"] {
+        own.supervisor.open(name).unwrap();
+    }
+    own.lasts(3.0);
+    assert!(errors(&own, "speedLimit").is_empty() && errors(&own, "limited").is_empty(), "{}", own.told);
+}
