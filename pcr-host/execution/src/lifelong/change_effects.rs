@@ -172,12 +172,15 @@ impl LifelongState {
         }
     }
 
-    /// Gives other routes to the vehicles on whose routes closed elements are.
+    /// Gives other routes to the vehicles on whose routes a closure is. Those that drive through another one, which began before, do so.
     fn turn_away(&mut self, closure: ChangeId, now: f64) {
+        let atoms = self.blocked(closure, usize::MAX);
         for robot in 0..self.robots.len() {
             let it = &self.robots[robot];
             let stop = it.stop();
-            let ahead = |k: &usize| self.world.closed[it.way.atoms[*k]] > 0 && it.way.offsets[*k + 1] > it.at;
+            // One that stands within an edge is still on it.
+            let is_left = |k: usize| it.way.offsets[k + 1] <= it.at && !(it.way.is_cut && k + 1 == it.way.atoms.len());
+            let ahead = |k: &usize| atoms.contains(&it.way.atoms[*k]) && !is_left(*k);
             let closed: Vec<usize> = (0..it.way.atoms.len()).filter(ahead).collect();
             let is_through = closed.iter().any(|&k| it.way.offsets[k] < stop || it.way.offsets[k] < it.at);
             let is_turned = closed.iter().any(|&k| it.way.offsets[k] >= stop);
