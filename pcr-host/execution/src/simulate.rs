@@ -13,6 +13,7 @@
 //!   observer          where a robot can be
 //!   replan            motions for the rest of the paths
 //!   precedence_guard  passing orders in between
+//!   missing_clearance room that is missing beside a robot that stands
 //!   braking           speeds frame by frame
 //! steering            common code of the reactive controllers:
 //!   potential         artificial potential field
@@ -28,6 +29,7 @@
 mod braking;
 pub mod forage;
 mod frame_contact;
+mod missing_clearance;
 mod noise;
 mod observer;
 mod orca;
@@ -52,6 +54,7 @@ pub use outcome::{
     BlockedRobotEntry, CollisionEntry, ControllerRunEntry, MissionEntry, MissionRecord, MotionTrace, PlanningEntry,
     RunEnd, SimulationReport, SimulationRun,
 };
+pub use replan::ClearanceEntry;
 pub use simulation_task::{ReleasedMission, RobotTask, SimulationTask, StandingObstacle};
 pub use speed_limited_path::{OwnedMotion, SpeedLimitedPath};
 pub use true_state::{Disturbance, HELD_EVERY};

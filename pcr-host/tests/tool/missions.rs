@@ -62,6 +62,39 @@ fn closures_are_told_and_missions_that_are_impossible_end_with_status_1() {
     assert!(table.out.contains("\nnode 60 closed from 1 s for ever: "), "{}", table.out);
 }
 
+/// Closures by the names of blocks, and limits of the speed; as lines and as a table of CSV.
+#[test]
+fn zones_of_the_layout_are_closed_and_speeds_limited() {
+    let plant = concat!(env!("CARGO_MANIFEST_DIR"), "/../tests/data/real/opentcs/Demo-01.xml");
+    let text = std::fs::read_to_string(plant).unwrap();
+    let block = text.split("<block name=\"").nth(1).expect("a block");
+    let name = block.split('"').next().unwrap();
+    let closed = missions("zones.csv", &format!("zone,at,until,speed\n{name},10,100,\n{name},120,,0.1\n"));
+    let ask = ["traffic", plant, "--hours", "0.1", "--radius", "0.4", "--agents", "2", "--active", "2", "--closures"];
+    let ask = [&ask[..], &[&closed, "-q"]].concat();
+    let report = run(&[&ask[..], &["--json"]].concat());
+    let report: Value = serde_json::from_str(&report.out).unwrap_or_else(|_| panic!("{}", report.err));
+    assert_eq!(report["runs"][0]["certificate"]["verdict"], "proved");
+    let closures = report["closures"].as_array().unwrap();
+    assert!(closures.iter().all(|it| it["zone"] == name && it["edge"].is_null() && it["begun"] == true), "{closures:?}");
+    assert_eq!([&closures[0]["speed"], &closures[1]["speed"]], [&Value::Null, &0.1.into()]);
+    let table = run(&ask[..ask.len() - 1]).out;
+    for told in [format!("\nzone {name} closed from 10 s until 100 s: "), format!("\nzone {name} limited to 0.1 m/s from 120 s for ever: ")] {
+        assert!(table.contains(&told), "{told}: {table}");
+    }
+    for (file, line, why) in [
+        ("no.jsonl", "{\"zone\": \"nowhere\", \"at\": 0}", ":1:10: there is no zone nowhere in the layout; zones are"),
+        ("two.jsonl", "{\"zone\": \"z\", \"edge\": 1, \"at\": 0}", ":1:1: a closure is of an edge, of a node or of a zone"),
+    ] {
+        let wrong = missions(file, line);
+        let error = run(&["traffic", plant, "--hours", "0.1", "--radius", "0.4", "--closures", &wrong, "-q"]).failed(2);
+        assert!(error.starts_with(&format!("pcr: {wrong}{why}")), "{error}");
+    }
+    let node = missions("node.jsonl", "{\"node\": 60, \"at\": 0, \"speed\": 1}");
+    let error = run(&["traffic", WAREHOUSE, "--hours", "0.1", "--radius", "0.4", "--closures", &node, "-q"]).failed(2);
+    assert!(error.starts_with(&format!("pcr: {node}:1:31: speed: a limit is of an edge, or of a zone with edges")), "{error}");
+}
+
 #[test]
 fn closures_and_breakdowns_are_told_of_fleets_that_run() {
     let closed = missions(

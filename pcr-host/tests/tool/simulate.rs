@@ -1,6 +1,6 @@
 //! `pcr simulate`: outputs, the page, refusals.
 
-use crate::fixture::{column, crossing, directory, file, run};
+use crate::fixture::{column, crossing, directory, file, run, straight};
 use serde_json::json;
 
 /// The controllers, in the order of their runs.
@@ -218,4 +218,36 @@ fn a_turn_in_place_at_the_end_is_over_when_the_mission_is_done() {
         let told = run["unimpeded"].as_f64().unwrap();
         assert!((told - unimpeded).abs() < 1e-6, "{told}");
     }
+}
+
+/// The plan leads past one that stands with less room than two robots need that are not quite on their paths.
+#[test]
+fn room_that_is_missing_is_told_with_what_would_do() {
+    for beside in [0.5041, 0.5025] {
+        let stands = json!({ "id": 2, "radius": 0.25, "start": { "x": 0.0, "y": beside, "heading": 0.0 }, "path": [] });
+        let scenario = json!({ "agents": [straight(1, [-2.0, 0.0, 0.0], 4.0), stands] });
+        let name = file("simulate", "beside.json", scenario.to_string());
+        let ask = ["simulate", &name, "--controller", "pcr"];
+        let waiting = run(&[&ask[..], &["--json", "-q"]].concat()).json()["runs"][0]["waiting_for"][0].clone();
+        assert_eq!((&waiting["id"], &waiting["by"]), (&json!(1), &json!(2)), "{waiting}");
+        let number = |key: &str| waiting["clearance"][key].as_f64().unwrap();
+        let (free, needed) = (number("free"), number("needed"));
+        assert!((free - (beside - 0.5)).abs() < 1e-5 && needed >= 0.005, "{waiting}");
+        let told = run(&ask).ok();
+        assert!(told.contains("pcr: 1 never set off, as 2 stands too near its way: 0.00"), "{told}");
+        // With the drift that is named it arrives, and with a little more it does not.
+        let drift = number("drift");
+        let with = |drift: f64| {
+            let drift = format!("{drift:.6}");
+            run(&[&ask[..], &["--json", "-q", "--drift", &drift]].concat()).json()["runs"][0]["done"].clone()
+        };
+        assert_eq!([with(drift - 1e-6), with(drift + 1e-4)], [json!(1), json!(0)], "{waiting}");
+        assert!(told.contains(&format!("or --drift {:.4}, would do", (1e4 * drift).floor() * 1e-4)), "{told}");
+    }
+    // In the way also without any error.
+    let stands = json!({ "id": 2, "radius": 0.25, "start": { "x": 0.0, "y": 0.3, "heading": 0.0 }, "path": [] });
+    let scenario = json!({ "agents": [straight(1, [-2.0, 0.0, 0.0], 4.0), stands] });
+    let name = file("simulate", "within.json", scenario.to_string());
+    let told = run(&["simulate", &name, "--controller", "pcr"]).ok();
+    assert!(told.contains("pcr: 1 never set off, as 2 stands in its way\n"), "{told}");
 }

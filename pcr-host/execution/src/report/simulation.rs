@@ -1,6 +1,6 @@
 //! Simulated runs as text.
 
-use crate::simulate::{ControllerRunEntry, RunEnd, SimulationReport};
+use crate::simulate::{ClearanceEntry, ControllerRunEntry, RunEnd, SimulationReport};
 use pcr_formats::scenario::Labels;
 use pcr_planning::figures::small;
 use pcr_planning::report::text_table::TextTable;
@@ -83,6 +83,19 @@ pub fn simulation_table(simulation: &SimulationReport, out: &mut dyn Write) -> i
     Ok(())
 }
 
+/// What room is missing, and what would do; lengths are rounded so that they do, to tenths of a millimetre.
+fn missing(ClearanceEntry { free, needed, drift }: ClearanceEntry) -> String {
+    let up = |length: f64| (1e4 * length).ceil() * 1e-4;
+    let down = |length: f64| (1e4 * length).floor() * 1e-4;
+    let less = drift.map_or_else(String::new, |drift| format!(", or --drift {:.4},", down(drift)));
+    format!(
+        "{:.4} m are free and {:.4} m needed, as robots may be off their paths; {:.4} m more{less} would do",
+        down(free),
+        up(needed),
+        up(needed - free)
+    )
+}
+
 fn planning(run: &ControllerRunEntry, labels: &Labels, out: &mut dyn Write) -> io::Result<()> {
     let Some(planning) = run.planning else { return Ok(()) };
     let (count, kept) = (planning.count, planning.kept);
@@ -95,7 +108,10 @@ fn planning(run: &ControllerRunEntry, labels: &Labels, out: &mut dyn Write) -> i
     for waiting in &run.waiting_for {
         let by = waiting.blocked_by.map(|by| display_name(labels, by));
         let why = match (waiting.begun, by) {
-            (false, Some(by)) => format!("never set off, as {by} stands in its way or too near it for their margins"),
+            (false, Some(by)) => match waiting.clearance {
+                Some(room) => format!("never set off, as {by} stands too near its way: {}", missing(room)),
+                None => format!("never set off, as {by} stands in its way"),
+            },
             (false, None) => "never set off, as no order of passing lets it through with its margin".to_owned(),
             (true, Some(by)) => format!("stands on its way, as {by} passes first"),
             (true, None) => "stands on its way, though no passing order holds it".to_owned(),

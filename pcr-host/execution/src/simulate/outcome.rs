@@ -3,7 +3,7 @@
 use super::frame_contact::{contacts, separation};
 use super::outline_contact::{BodyTrack, meetings};
 use super::pcr_controller::PlanningStatistics;
-use super::replan::{BlockedRobot, Blocker};
+use super::replan::{BlockedRobot, Blocker, ClearanceEntry};
 use super::simulation_task::SimulationTask;
 use super::steering::closed;
 use super::vector::{PlaneVector, norm, sub};
@@ -185,6 +185,9 @@ pub struct BlockedRobotEntry {
     /// obstacle without a number, and if no passing order lets it through. Afterwards: number of the robot that passes first.
     #[serde(rename = "by")]
     pub blocked_by: Option<u64>,
+    /// The room that is missing beside it, if that is all that keeps the robot from its beginning.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub clearance: Option<ClearanceEntry>,
 }
 
 /// Two robots in contact.
@@ -262,13 +265,14 @@ impl ControllerRunEntry {
 }
 
 impl BlockedRobotEntry {
-    fn of(task: &SimulationTask, BlockedRobot { robot, begun, blocked_by: by }: BlockedRobot) -> Self {
+    fn of(task: &SimulationTask, waiting: BlockedRobot) -> Self {
+        let BlockedRobot { robot, begun, blocked_by: by, clearance } = waiting;
         let by = match by {
             Some(Blocker::Robot(other)) => task.robots.get(other).map(|robot| robot.id),
             Some(Blocker::Obstacle(other)) => task.obstacles.get(other).and_then(|obstacle| obstacle.id),
             None => None,
         };
-        Self { id: task.robots[robot].id, begun, blocked_by: by }
+        Self { id: task.robots[robot].id, begun, blocked_by: by, clearance }
     }
 }
 

@@ -8,6 +8,7 @@
 //! Plans keep a margin for the errors of the camera and of the robots ([`ErrorBounds`]). A late robot causes no collision: the
 //! guard holds the robots that pass after it. If no new plan is found, the old orders stay.
 
+use super::missing_clearance::missing_clearance;
 use super::braking::{speed_within, stopping_length};
 use super::observer::narrowed;
 use super::precedence_guard::{GuardError, PrecedenceGuard};
@@ -410,10 +411,17 @@ impl RobotController for PcrController {
         let problem = ReplanProblem { now: 0.0, robots: &robots, obstacles: &self.obstacles };
         let waits = |(robot, agent): (usize, &RobotEstimate)| {
             if pending[robot] {
-                return Some(BlockedRobot { robot, begun: false, blocked_by: problem.in_the_way(robot, |_| true) });
+                let blocked_by = problem.in_the_way(robot, |_| true);
+                let room = |by: Blocker| missing_clearance(&self.agents, &problem, (robot, by), self.errors.drift);
+                return Some(BlockedRobot { robot, begun: false, blocked_by, clearance: blocked_by.and_then(room) });
             }
             let by = || self.guard.waits_for(robot, &places).map(Blocker::Robot);
-            (agent.speed <= 0.0 && !agent.stands()).then(|| BlockedRobot { robot, begun: true, blocked_by: by() })
+            (agent.speed <= 0.0 && !agent.stands()).then(|| BlockedRobot {
+                robot,
+                begun: true,
+                blocked_by: by(),
+                clearance: None,
+            })
         };
         self.agents.iter().enumerate().filter_map(waits).collect()
     }

@@ -9,6 +9,7 @@ use super::speed_limited_path::{OwnedMotion, SpeedLimitedPath};
 use pcr_core::{Encounter, Limits, Motion, earliest_start};
 use pcr_planning::fleet::{ConvexBody, HostEcm, build_ecm_of};
 use pcr_planning::plan::start_delays;
+use serde::Serialize;
 
 /// Distance along its path that a robot keeps from a region before which it waits \[m\].
 const BEFORE: f64 = 1e-4;
@@ -56,6 +57,17 @@ pub(super) enum Blocker {
     Obstacle(usize),
 }
 
+/// The room between a robot's way and one that stands beside it, beyond the bodies with their own margins.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct ClearanceEntry {
+    /// What there is \[m\].
+    pub free: f64,
+    /// What the two need, because they may be off their paths \[m\].
+    pub needed: f64,
+    /// The largest drift (`--drift`) with which that is enough \[m\]; none if even without any drift it is not.
+    pub drift: Option<f64>,
+}
+
 /// A robot that stands with a mission that is not done.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct BlockedRobot {
@@ -64,6 +76,8 @@ pub(super) struct BlockedRobot {
     pub(super) begun: bool,
     /// The robot or obstacle for which it waits.
     pub(super) blocked_by: Option<Blocker>,
+    /// The room that is missing there, if room for errors is all that keeps it from its beginning.
+    pub(super) clearance: Option<ClearanceEntry>,
 }
 
 /// The input of a plan.

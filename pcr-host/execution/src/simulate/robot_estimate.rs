@@ -25,6 +25,10 @@ pub(super) struct RobotEstimate {
     pub(super) limits: Limits<f64>,
     /// The body with the margins for passing orders and for plans.
     pub(super) bodies: [ConvexBody; 2],
+    /// The body with its own margin.
+    pub(super) body: ConvexBody,
+    /// How far it may be off its path: the margin for passing orders beyond its own \[m\].
+    pub(super) off: f64,
     /// The present path, and the interval of lengths in which the robot is.
     pub(super) course: SpeedLimitedPath,
     pub(super) position_interval: Interval<f64>,
@@ -65,6 +69,8 @@ impl RobotEstimate {
         let agent = Self {
             limits,
             bodies: [inflated(margins[0])?, inflated(margins[1])?],
+            body: inflated(robot.margin)?,
+            off,
             course: course.map_err(|_| ComputationError::Robot(robot.id))?,
             position_interval: Interval::new(0.0, 0.0),
             speed: 0.0,
