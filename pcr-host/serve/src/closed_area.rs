@@ -127,10 +127,8 @@ impl PageLayout {
         let lanes = self.lanes.iter().filter(|lane| of_lane(lane.edge.as_ref(), &lane.zones));
         let lanes = lanes.map(|lane| AreaPath { start: lane.course.start(), path: lane.course.shapes().to_vec() });
         let nodes = self.nodes.iter().filter(|node| of_node(&node.node, &node.zones));
-        let nodes = nodes.map(|node| AreaPath {
-            start: StartPose { x: node.x, y: node.y, heading: 0.0 },
-            path: Vec::new(),
-        });
+        let nodes =
+            nodes.map(|node| AreaPath { start: StartPose { x: node.x, y: node.y, heading: 0.0 }, path: Vec::new() });
         lanes.chain(nodes).collect()
     }
 }

@@ -148,7 +148,10 @@ fn of_absent(text: &mut String, supervisor: &Supervisor) {
 /// A line for each closed area.
 fn of_closures(text: &mut String, supervisor: &Supervisor) {
     let (name, all) = ("pcr_closures", supervisor.closures().count());
-    let _ = writeln!(text, "# HELP {name} Areas that are closed, or where the speed is limited.\n# TYPE {name} gauge\n{name} {all}");
+    let _ = writeln!(
+        text,
+        "# HELP {name} Areas that are closed, or where the speed is limited.\n# TYPE {name} gauge\n{name} {all}"
+    );
     let name = "pcr_closure";
     let _ = writeln!(text, "# HELP {name} Number of robots that wait before a closed area.\n# TYPE {name} gauge");
     for area in supervisor.closures() {

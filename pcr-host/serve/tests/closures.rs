@@ -272,7 +272,10 @@ fn robots_are_told_where_their_speed_is_limited_before_they_may_go_there() {
     let impact = own.close(slow(-2.0)).unwrap();
     assert_eq!((impact.through, impact.stopped.len()), (vec!["east".to_owned()], 0));
     let events = own.settle(3.1).unwrap();
-    assert!(limits(&events).is_some_and(|all| all.len() == 1) && !names(&events).contains(&"stop".to_owned()), "{events:?}");
+    assert!(
+        limits(&events).is_some_and(|all| all.len() == 1) && !names(&events).contains(&"stop".to_owned()),
+        "{events:?}"
+    );
     own.open("aisle 3").unwrap();
     assert_eq!(limits(&own.settle(3.2).unwrap()), Some(Vec::new()));
 }
@@ -291,12 +294,13 @@ fn areas_are_closed_by_the_ids_of_the_layout() {
     let edge = json!({ "verb": "close", "closure": "A", "edge": "e1", "radius": 0.3 });
     let why = ask(&mut own, edge.clone())["error"]["message"].clone();
     assert_eq!(why, "edge: the layout that was sent has no edge e1");
-    let lane = |x: f64, edge: Value, zones: Value| {
-        json!({ "start": { "x": x, "y": -2, "heading_deg": 90 }, "path": [{ "kind": "line", "length": 4 }], "edge": edge, "zones": zones })
-    };
-    let lanes = [lane(0.0, json!("e1"), json!([])), lane(2.0, json!(7), json!(["bay"])), lane(3.0, json!(8), json!(["bay"]))];
+    let lane = |x: f64, edge: Value, zones: Value| json!({ "start": { "x": x, "y": -2, "heading_deg": 90 }, "path": [{ "kind": "line", "length": 4 }], "edge": edge, "zones": zones });
+    let lanes =
+        [lane(0.0, json!("e1"), json!([])), lane(2.0, json!(7), json!(["bay"])), lane(3.0, json!(8), json!(["bay"]))];
     let nodes = json!([{ "node": 4, "x": -1.0, "y": 0.0, "zones": ["bay"] }, { "node": "n5", "x": 1.0, "y": 0.0 }]);
-    assert!(ask(&mut own, json!({ "verb": "layout", "name": "hall", "lanes": lanes, "nodes": nodes }))["ok"].is_object());
+    assert!(
+        ask(&mut own, json!({ "verb": "layout", "name": "hall", "lanes": lanes, "nodes": nodes }))["ok"].is_object()
+    );
     own.mission(&straight("1", 10.0), 0.0).unwrap();
     own.settle(0.0).unwrap();
     let stops_before = |own: &mut Supervisor, request: Value, at: f64| {

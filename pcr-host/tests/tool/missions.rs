@@ -76,15 +76,25 @@ fn zones_of_the_layout_are_closed_and_speeds_limited() {
     let report: Value = serde_json::from_str(&report.out).unwrap_or_else(|_| panic!("{}", report.err));
     assert_eq!(report["runs"][0]["certificate"]["verdict"], "proved");
     let closures = report["closures"].as_array().unwrap();
-    assert!(closures.iter().all(|it| it["zone"] == name && it["edge"].is_null() && it["begun"] == true), "{closures:?}");
+    assert!(
+        closures.iter().all(|it| it["zone"] == name && it["edge"].is_null() && it["begun"] == true),
+        "{closures:?}"
+    );
     assert_eq!([&closures[0]["speed"], &closures[1]["speed"]], [&Value::Null, &0.1.into()]);
     let table = run(&ask[..ask.len() - 1]).out;
-    for told in [format!("\nzone {name} closed from 10 s until 100 s: "), format!("\nzone {name} limited to 0.1 m/s from 120 s for ever: ")] {
+    for told in [
+        format!("\nzone {name} closed from 10 s until 100 s: "),
+        format!("\nzone {name} limited to 0.1 m/s from 120 s for ever: "),
+    ] {
         assert!(table.contains(&told), "{told}: {table}");
     }
     for (file, line, why) in [
         ("no.jsonl", "{\"zone\": \"nowhere\", \"at\": 0}", ":1:10: there is no zone nowhere in the layout; zones are"),
-        ("two.jsonl", "{\"zone\": \"z\", \"edge\": 1, \"at\": 0}", ":1:1: a closure is of an edge, of a node or of a zone"),
+        (
+            "two.jsonl",
+            "{\"zone\": \"z\", \"edge\": 1, \"at\": 0}",
+            ":1:1: a closure is of an edge, of a node or of a zone",
+        ),
     ] {
         let wrong = missions(file, line);
         let error = run(&["traffic", plant, "--hours", "0.1", "--radius", "0.4", "--closures", &wrong, "-q"]).failed(2);
@@ -92,7 +102,10 @@ fn zones_of_the_layout_are_closed_and_speeds_limited() {
     }
     let node = missions("node.jsonl", "{\"node\": 60, \"at\": 0, \"speed\": 1}");
     let error = run(&["traffic", WAREHOUSE, "--hours", "0.1", "--radius", "0.4", "--closures", &node, "-q"]).failed(2);
-    assert!(error.starts_with(&format!("pcr: {node}:1:31: speed: a limit is of an edge, or of a zone with edges")), "{error}");
+    assert!(
+        error.starts_with(&format!("pcr: {node}:1:31: speed: a limit is of an edge, or of a zone with edges")),
+        "{error}"
+    );
 }
 
 #[test]

@@ -70,7 +70,8 @@ fn watched(imported: &ImportedLayout, request: LifelongOptions, changes: &SiteCh
             let brakes = it.speed < before[robot].1 || it.speed == 0.0;
             // Whoever is faster than the limit brakes as hard as it can.
             let limit = run.site.atoms[it.way.atoms[it.way.atom(it.at)]].speed.max(it.abilities.acceleration * STEP);
-            let is_kept = it.speed <= limit + 1e-9 || it.speed <= before[robot].1 - it.abilities.acceleration * STEP + 1e-9;
+            let is_kept =
+                it.speed <= limit + 1e-9 || it.speed <= before[robot].1 - it.abilities.acceleration * STEP + 1e-9;
             assert!(is_kept, "at {now} robot {robot} drives at {} where {limit} m/s are allowed", it.speed);
             assert!(!run.world.is_stranded(robot, now) || brakes, "robot {robot} drives at {now}");
         }

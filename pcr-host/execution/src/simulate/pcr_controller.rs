@@ -8,8 +8,8 @@
 //! Plans keep a margin for the errors of the camera and of the robots ([`ErrorBounds`]). A late robot causes no collision: the
 //! guard holds the robots that pass after it. If no new plan is found, the old orders stay.
 
-use super::missing_clearance::missing_clearance;
 use super::braking::{speed_within, stopping_length};
+use super::missing_clearance::missing_clearance;
 use super::observer::narrowed;
 use super::precedence_guard::{GuardError, PrecedenceGuard};
 use super::replan::{BlockedRobot, Blocker, FleetMotionPlan, ReplanProblem, RobotState, SEARCHED};

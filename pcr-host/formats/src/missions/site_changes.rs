@@ -125,7 +125,9 @@ fn zone(layout: &Layout, (name, position): &PlacedName) -> Result<usize, Mission
     let wrong = |problem: String| MissionFileError { position: *position, problem };
     let found = layout.zones.iter().position(|zone| zone.id == *name);
     let place = found.ok_or_else(|| {
-        wrong(format!("there is no zone {name} in the layout; zones are blocks of openTCS and mutex groups of Open-RMF"))
+        wrong(format!(
+            "there is no zone {name} in the layout; zones are blocks of openTCS and mutex groups of Open-RMF"
+        ))
     })?;
     let zone = &layout.zones[place];
     let level = layout.largest_level();

@@ -8,10 +8,10 @@
 use super::Supervisor;
 use super::alarms::{AlarmLimit, LimitCause};
 use crate::closed_area::ClosedArea;
+use crate::event::SupervisorEvent;
 use crate::journal_entry::JournalEntry;
 use crate::owned_path::{FAR, OwnedPath};
 use crate::request_error::RequestError;
-use crate::event::SupervisorEvent;
 use crate::robot::{ROOM, SupervisedRobot};
 use pcr_core::{Ecm, Interval};
 use pcr_formats::scenario::label;
@@ -60,7 +60,9 @@ impl ClosedPath {
             return Err(RequestError::invalid(format!("radius: above 0, up to {FAR} m is allowed")));
         }
         if let Some(speed) = area.speed.filter(|speed| !(SLOWEST..=FASTEST).contains(speed)) {
-            return Err(RequestError::invalid(format!("speed: {speed} is out of range; allowed is {SLOWEST} to {FASTEST}")));
+            return Err(RequestError::invalid(format!(
+                "speed: {speed} is out of range; allowed is {SLOWEST} to {FASTEST}"
+            )));
         }
         let courses = area.courses().map_err(RequestError::invalid)?;
         for course in &courses {
@@ -165,7 +167,11 @@ impl Supervisor {
             Some(lengths) => lengths.iter().any(|length| length.lo > at && length.lo >= told - ROOM),
             None => true,
         };
-        self.closures.values().filter(|closed| closed.is_shut()).find(leads_into).map(|closed| closed.area.name.as_str())
+        self.closures
+            .values()
+            .filter(|closed| closed.is_shut())
+            .find(leads_into)
+            .map(|closed| closed.area.name.as_str())
     }
 
     /// Limits because of closed areas.

@@ -9,14 +9,22 @@ use serde_json::{Value, json};
 /// A disc about a point of the way.
 fn slow(name: &str, x: f64, speed: f64) -> ClosedArea {
     let start = StartPose { x, y: 0.0, heading: 0.0 };
-    ClosedArea { name: name.into(), start, path: Vec::new(), more: Vec::new(), radius: 0.5, of: None, speed: Some(speed) }
+    ClosedArea {
+        name: name.into(),
+        start,
+        path: Vec::new(),
+        more: Vec::new(),
+        radius: 0.5,
+        of: None,
+        speed: Some(speed),
+    }
 }
 
-/// An order along nodes at 0, 10, 20 and 30 m; the third edge has a speed of its own.
+/// An order along nodes at 0, 40, 80 and 120 m; the third edge has a speed of its own.
 fn order() -> Value {
     let node = |k: u64| {
         json!({ "nodeId": format!("n{}", 2 * k), "sequenceId": 2 * k, "released": true, "actions": [],
-            "nodePosition": { "x": 10.0 * k as f64, "y": 0.0, "mapId": "map" } })
+            "nodePosition": { "x": 40.0 * k as f64, "y": 0.0, "mapId": "map" } })
     };
     let edge = |k: u64| {
         let mut edge = json!({ "edgeId": format!("e{k}"), "sequenceId": 2 * k + 1, "released": true, "actions": [],
@@ -51,8 +59,8 @@ fn errors(own: &Puppet, kind: &str) -> Vec<String> {
 fn edges_that_are_not_released_get_the_limit_and_of_others_the_manager_is_told() {
     let mut own = Puppet::new();
     // Before the order: all of it is sent with the limit, also where the edge is slow already.
-    own.supervisor.close(slow("gate", 15.0, 0.5)).unwrap();
-    own.supervisor.close(slow("door", 25.0, 0.4)).unwrap();
+    own.supervisor.close(slow("gate", 60.0, 0.5)).unwrap();
+    own.supervisor.close(slow("door", 100.0, 0.4)).unwrap();
     own.manager(TopicKind::Order, order());
     own.lasts(1.0);
     assert_eq!([speed_of(&own, "e0"), speed_of(&own, "e1"), speed_of(&own, "e2")], [None, Some(0.5), Some(0.3)]);
@@ -63,7 +71,7 @@ fn edges_that_are_not_released_get_the_limit_and_of_others_the_manager_is_told()
     let orders = own.orders();
     own.supervisor.close(slow("aisle", 3.0, 0.2)).unwrap();
     own.supervisor.open("gate").unwrap();
-    own.supervisor.close(slow("gate", 15.0, 0.1)).unwrap();
+    own.supervisor.close(slow("gate", 60.0, 0.1)).unwrap();
     own.lasts(2.0);
     let told = "edge e0 was released before aisle limited the speed there to 0.2 m/s; the vehicle may be faster on it";
     assert_eq!(errors(&own, "speedLimit"), [told], "{}", own.told);

@@ -108,7 +108,8 @@ pub(super) fn mission(held: &OrderState, node: usize) -> String {
 impl ActiveOrder {
     /// A new order for a vehicle that stands at the start of the way.
     pub(super) fn new(held: OrderState, way: OrderPath, version: String) -> Self {
-        let first = ReleasePoint { sequence: 0, length: way.node(0).unwrap_or(0.0), node: 0, between: false, speed: None };
+        let first =
+            ReleasePoint { sequence: 0, length: way.node(0).unwrap_or(0.0), node: 0, between: false, speed: None };
         Self {
             order: held,
             path: way,
