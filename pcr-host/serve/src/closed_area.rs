@@ -1,7 +1,7 @@
 //! An area that a person has closed, or in which robots have to be slower, as lines and the journal have it.
 
-use crate::journal_entry::PageLayout;
 use crate::owned_path::{OwnedPath, PathElement, StartPose};
+use crate::page_layout::PageLayout;
 use pcr_formats::import::ElementId;
 use serde::{Deserialize, Serialize};
 
@@ -50,6 +50,17 @@ pub enum LayoutElement {
     Node(ElementId),
     /// The lanes and nodes of a zone.
     Zone(ElementId),
+}
+
+/// A part of a robot's path on which its speed is limited.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct SpeedLimit {
+    /// Name of the closure.
+    pub closure: String,
+    /// Lengths of the path between which it holds \[m\].
+    pub length: [f64; 2],
+    /// Largest speed there \[m/s\].
+    pub speed: f64,
 }
 
 /// A request to close an area: a path, or what has an id in the layout.

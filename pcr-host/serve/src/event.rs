@@ -1,7 +1,7 @@
 //! Events: messages that the supervisor sends without a request.
 
+use crate::closed_area::SpeedLimit;
 use crate::robot::Alarm;
-use crate::supervisor::SpeedLimit;
 use serde::{Serialize, Serializer};
 use std::fmt;
 

@@ -3,6 +3,7 @@
 //!
 //! ```text
 //! owned_path        paths that own their segments                      OwnedPath
+//! page_layout       what the page draws, with its ids                  PageLayout
 //! closed_area       an area that a person has closed                   ClosedArea
 //! robot             state of a robot                                   RobotTraits
 //! event             messages that it sends without a request
@@ -50,6 +51,7 @@ pub mod log;
 mod metrics;
 pub mod outbox;
 pub mod owned_path;
+pub mod page_layout;
 pub mod query;
 mod refusals;
 pub mod request_error;

@@ -3,10 +3,10 @@
 
 use crate::closed_area::ClosureRequest;
 use crate::event::SupervisorEvent;
-use crate::journal_entry::PageLayout;
 use crate::line_angles;
 use crate::metrics::Census;
 use crate::owned_path::StartPose;
+use crate::page_layout::PageLayout;
 use crate::query::{self, Query};
 use crate::request_error::RequestError;
 use crate::robot::RobotTraits;

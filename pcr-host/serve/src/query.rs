@@ -1,10 +1,11 @@
 //! Queries about a fleet.
 
+use crate::closed_area::SpeedLimit;
 use crate::journal_entry::StoredPassingState;
 use crate::owned_path::{JOINT, OwnedPath, PathElement, StartPose};
 use crate::request_error::RequestError;
 use crate::robot::{Alarm, ROOM, SupervisedRobot};
-use crate::supervisor::{SpeedLimit, Supervisor};
+use crate::supervisor::Supervisor;
 use pcr_core::{Encounter, Interval, Limits, Motion, Profile};
 use pcr_formats::footprint::Footprint;
 use pcr_planning::fleet::ConvexBody;

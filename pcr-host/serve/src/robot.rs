@@ -1,7 +1,7 @@
 //! The state of a robot: its abilities, its path, its place on the path, and how far it has been allowed to go.
 
+use crate::closed_area::SpeedLimit;
 use crate::owned_path::{OwnedPath, PathElement, PathRounding};
-use crate::supervisor::SpeedLimit;
 use pcr_core::{Interval, InvalidInput, Motion, MovementAuthority, Progress};
 use pcr_formats::footprint::Footprint;
 use pcr_planning::fleet::ConvexBody;

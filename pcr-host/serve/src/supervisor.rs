@@ -17,13 +17,14 @@ mod robot_notes;
 
 pub use absence::{StandingPlace, UnplacedVehicle};
 pub use admission::{AdmissionResult, MissionRequest};
-pub use closures::{ClosureImpact, SpeedLimit};
+pub use closures::ClosureImpact;
 pub use positions::PositionReport;
 pub use restore::JournalError;
 
 use crate::event::{CancelCause, SupervisorEvent};
-use crate::journal_entry::{JournalEntry, JournalStore, PageLayout};
+use crate::journal_entry::{JournalEntry, JournalStore};
 use crate::owned_path::{OwnedPath, StartPose};
+use crate::page_layout::PageLayout;
 use crate::request_error::RequestError;
 use crate::robot::{RobotTraits, SupervisedRobot};
 use pcr_core::{

@@ -7,7 +7,7 @@
 
 use super::Supervisor;
 use super::alarms::{AlarmLimit, LimitCause};
-use crate::closed_area::ClosedArea;
+use crate::closed_area::{ClosedArea, SpeedLimit};
 use crate::event::SupervisorEvent;
 use crate::journal_entry::JournalEntry;
 use crate::owned_path::{FAR, OwnedPath};
@@ -38,17 +38,6 @@ pub struct ClosureImpact {
 pub(super) struct ClosedPath {
     pub(super) area: ClosedArea,
     courses: Vec<OwnedPath>,
-}
-
-/// A part of a robot's path on which its speed is limited.
-#[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct SpeedLimit {
-    /// Name of the closure.
-    pub closure: String,
-    /// Lengths of the path between which it holds \[m\].
-    pub length: [f64; 2],
-    /// Largest speed there \[m/s\].
-    pub speed: f64,
 }
 
 impl ClosedPath {

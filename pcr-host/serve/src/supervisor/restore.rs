@@ -2,7 +2,8 @@
 
 use super::closures::ClosedPath;
 use super::{FleetPrecedences, Supervisor, SupervisorConfig, fleet, retry_with_growth};
-use crate::journal_entry::{JournalEntry, JournalStore, PageLayout, StoredPrecedence, StoredRobot};
+use crate::journal_entry::{JournalEntry, JournalStore, StoredPrecedence, StoredRobot};
+use crate::page_layout::PageLayout;
 use crate::request_error::RequestError;
 use crate::robot::{Alarm, SupervisedRobot, remember};
 use pcr_core::{CheckState, MismatchError, PassingState};

@@ -6,8 +6,8 @@
 mod reorder;
 
 use super::edge_reservations::{EdgeReservations, MissionEdge, VehicleCoordination, to_line};
-use crate::journal_entry::{PageLane, PageLayout, PageNode};
 use crate::owned_path::{OwnedPath, PathElement, StartPose};
+use crate::page_layout::{PageLane, PageLayout, PageNode};
 use crate::setup_error::SetupError;
 use pcr_formats::import::{self, ElementId, Layout, RouteStep, cheapest};
 use pcr_formats::splitmix64::SplitMix64;

@@ -2,10 +2,10 @@
 
 use super::super::order_path::OrderPath;
 use super::journal_notes::noted;
-use super::speed_limits;
+use crate::closed_area::SpeedLimit;
 use crate::owned_path::StartPose;
 use crate::robot::SupervisedRobot;
-use crate::supervisor::{JournalError, SpeedLimit};
+use crate::supervisor::JournalError;
 use pcr_formats::vda5050::order::{NodePosition, OrderEdge, OrderNode};
 use pcr_formats::vda5050::order_state::OrderState;
 use pcr_formats::vda5050::state::State;
@@ -50,6 +50,9 @@ pub struct VehicleAcknowledgement {
     /// Update ids of the update that the vehicle has: its own and the manager's.
     pub acknowledged: Option<(u64, u64)>,
 }
+
+/// The field of an edge with the largest speed on it \[m/s\].
+pub(super) const MAX_SPEED: &str = "maxSpeed";
 
 /// Key of the note about that.
 pub(super) const RECEIVED: &str = "received";
@@ -353,7 +356,7 @@ impl ActiveOrder {
         if from.between || to.between {
             edge.rest.remove("length");
         }
-        speed_limits::lower(&mut edge, if released { to.speed } else { self.limit_between(from.length, to.length) });
+        lower_speed(&mut edge, if released { to.speed } else { self.limit_between(from.length, to.length) });
         Some(edge)
     }
 
@@ -378,4 +381,11 @@ fn limit(position: &mut NodePosition, deviation: f64, version: &str) {
         position.rest.remove(old);
     }
     position.rest.insert(name.into(), value);
+}
+/// Lowers the speed of an edge.
+fn lower_speed(edge: &mut OrderEdge, speed: Option<f64>) {
+    let own = edge.rest.get(MAX_SPEED).and_then(Value::as_f64);
+    if let Some(speed) = speed.filter(|speed| own.is_none_or(|own| *speed < own)) {
+        edge.rest.insert(MAX_SPEED.into(), speed.into());
+    }
 }

@@ -2,16 +2,14 @@
 //! manager is told of the edges that the vehicle has already with a higher one.
 
 use super::VehicleAdapter;
-use super::job::ActiveOrder;
+use super::job::{ActiveOrder, MAX_SPEED};
+use crate::closed_area::SpeedLimit;
 use crate::owned_path::OwnedPath;
 use crate::robot::SupervisedRobot;
-use crate::supervisor::{SpeedLimit, Supervisor};
+use crate::supervisor::Supervisor;
 use pcr_formats::vda5050::order::OrderEdge;
 use pcr_formats::vda5050::state::{ErrorEntry, State};
 use serde_json::Value;
-
-/// The field of an edge \[m/s\].
-const FIELD: &str = "maxSpeed";
 
 impl VehicleAdapter {
     /// Takes the limits that hold now. The manager is told at once of what cannot be changed any more.
@@ -73,7 +71,7 @@ impl ActiveOrder {
         let mut found: Vec<(&SpeedLimit, &OrderEdge)> = Vec::new();
         for pair in self.stops.get(place..).unwrap_or_default().windows(2) {
             let Some(edge) = self.order.edges.get(pair[0].node) else { continue };
-            let own = edge.rest.get(FIELD).and_then(Value::as_f64);
+            let own = edge.rest.get(MAX_SPEED).and_then(Value::as_f64);
             let known = [pair[1].speed, own].into_iter().flatten().fold(fastest, f64::min);
             let is_unknown = |limit: &&SpeedLimit| {
                 limit.length[0] < pair[1].length && limit.length[1] > pair[0].length && limit.speed < known
@@ -85,13 +83,5 @@ impl ActiveOrder {
             }
         }
         found
-    }
-}
-
-/// Lowers the speed of an edge.
-pub(super) fn lower(edge: &mut OrderEdge, speed: Option<f64>) {
-    let own = edge.rest.get(FIELD).and_then(Value::as_f64);
-    if let Some(speed) = speed.filter(|speed| own.is_none_or(|own| *speed < own)) {
-        edge.rest.insert(FIELD.into(), speed.into());
     }
 }
