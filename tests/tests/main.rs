@@ -95,6 +95,7 @@ mod plans_footprints;
 mod plans_proved;
 mod profiles;
 mod properties;
+mod records_bags;
 mod refilled;
 mod refuted;
 mod regressions;

@@ -14,6 +14,7 @@
 //! layout          the corridors on the edges of a layout
 //! exclusion_page  a page on which the edges of a layout show the lengths that they block
 //! replay          a page that replays a simulation
+//! record_page     a page about a record of what ran
 //! fleet_page      a page that shows a running fleet
 //! template        pages that contain everything they need
 //! svg             the writer of SVG files
@@ -35,6 +36,7 @@ mod palette;
 pub mod plot;
 #[cfg(feature = "png")]
 mod png;
+pub mod record_page;
 mod region_scene;
 pub mod replay;
 mod svg;

@@ -85,7 +85,9 @@ pub use grid::GridPlan;
 pub use json_access::parse as parse_json;
 pub use layout::{ElementId, Layout, LayoutEdge, LayoutNode, LayoutZone};
 pub use nav2::graph_id;
-pub use poses::{BetweenPoses, PoseLog, PoseOptions, PoseTrack, TimedPose, poses};
+#[cfg(feature = "bags")]
+pub use poses::{BAG, poses_in_bag};
+pub use poses::{BetweenPoses, HeldTime, PoseLog, PoseOptions, PoseTrack, TimedPose, poses};
 pub use rmf::is_navigation_graph;
 pub use route::{RouteStep, cheapest, ride, turn};
 pub use timed_paths::sectioned;

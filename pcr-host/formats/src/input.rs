@@ -22,6 +22,8 @@ pub enum InputError {
     Unreadable(Option<PathBuf>, io::Error),
     /// It is not text in UTF-8.
     NotText(Option<PathBuf>),
+    /// It is a bag of ROS in a form that is not read here, and what to do with it.
+    Bag(Option<PathBuf>, &'static str),
     /// It is not a scenario.
     Refused(Option<PathBuf>, ScenarioError),
     /// It is not of the format that it is read in.
@@ -50,6 +52,7 @@ impl fmt::Display for InputError {
         match self {
             Self::Unreadable(file, error) => write!(f, "{}: cannot be read: {error}", name(file)),
             Self::NotText(file) => write!(f, "{}: not text in UTF-8", name(file)),
+            Self::Bag(file, what) => write!(f, "{}: {what}", name(file)),
             Self::Refused(file, error) => {
                 // As editors and terminals recognise it.
                 let column = error.column().map_or_else(String::new, |column| format!(":{column}"));
@@ -99,11 +102,29 @@ fn text(file: &Path) -> Result<(Option<PathBuf>, String), InputError> {
         }
     };
     let bytes = bytes.map_err(|error| InputError::Unreadable(name.clone(), error))?;
+    if let Some((_, what)) = BAGS.iter().find(|(magic, _)| bytes.starts_with(magic)) {
+        return Err(InputError::Bag(name, what));
+    }
     match String::from_utf8(bytes) {
         Ok(text) => Ok((name, text)),
         Err(_) => Err(InputError::NotText(name)),
     }
 }
+
+/// First bytes of bags that are no text, and what to do with them.
+const BAGS: [(&[u8], &str); 3] = [
+    (b"\x89MCAP0\r\n", "a bag of ROS 2 (MCAP); only pcr check FILE reads it"),
+    (
+        b"SQLite format 3\0",
+        "a SQLite database, as rosbag2 writes it; convert the bag to MCAP: rosbags-convert --src FOLDER --dst NEW --dst-storage mcap \
+         (pip install rosbags), or ros2 bag convert",
+    ),
+    (
+        b"#ROSBAG V2.0",
+        "a bag of ROS 1; convert it to MCAP: rosbags-convert --src FILE --dst NEW --dst-storage mcap --dst-typestore latest \
+         (pip install rosbags)",
+    ),
+];
 
 /// A file for messages; nothing for standard input.
 fn named(file: &Path) -> Option<PathBuf> {
@@ -230,6 +251,10 @@ pub fn kind_of(file: &Path, text: &str, options: &ImportOptions) -> InputKind {
 pub fn holds_poses(file: &Path, options: &ImportOptions) -> bool {
     /// Bytes that tell whether a text may hold poses at all.
     const HEAD: u64 = 4096;
+    #[cfg(feature = "bags")]
+    if options.from.is_none() && is_bag(file) {
+        return true;
+    }
     match options.from {
         Some(format) => format == InputFormat::Poses,
         None if !fs::metadata(file).is_ok_and(|there| there.is_file()) => false,
@@ -242,6 +267,36 @@ pub fn holds_poses(file: &Path, options: &ImportOptions) -> bool {
                 && fs::read_to_string(file)
                     .is_ok_and(|text| InputFormat::detect(file, &text) == Some(InputFormat::Poses))
         }
+    }
+}
+
+/// Whether a file is a bag of ROS 2 (MCAP). Standard input is not read for that.
+#[cfg(feature = "bags")]
+pub fn is_bag(file: &Path) -> bool {
+    let mut head = Vec::new();
+    let is_file = fs::metadata(file).is_ok_and(|there| there.is_file());
+    is_file
+        && fs::File::open(file).is_ok_and(|opened| opened.take(import::BAG.len() as u64).read_to_end(&mut head).is_ok())
+        && head == import::BAG
+}
+
+/// Reads the poses in a bag of ROS 2, and warnings about them.
+///
+/// # Errors
+/// [`InputError`], naming the file.
+#[cfg(feature = "bags")]
+pub fn read_bag(
+    file: &Path,
+    options: &ImportOptions,
+    pose_options: &PoseOptions,
+) -> Result<(PoseLog, Warnings), InputError> {
+    let name = named(file);
+    useful(&name, "", Some(InputFormat::Poses), options)?;
+    let mut warnings = Warnings::default();
+    let mut opened = fs::File::open(file).map_err(|error| InputError::Unreadable(name.clone(), error))?;
+    match import::poses_in_bag(&mut opened, options, pose_options, &mut warnings) {
+        Ok(log) => Ok((log, warnings)),
+        Err(error) => Err(InputError::Foreign(name, InputFormat::Poses, error)),
     }
 }
 

@@ -2,21 +2,33 @@
 //!
 //! ```text
 //! bounded_leg    where an agent may be between two poses
+//! convex_parts   outlines, and how far two of them are apart
+//! open_spans     when a contact is proved, or cannot be known, by bounds of a distance
+//! body_pair      the same as leg_pair where one of two agents has an outline
 //! leg_pair       two agents in a time in which both are on a leg: nearest approach, contact proved, excluded or not known
 //! leg_blocks     the legs of an agent, in blocks with boxes around them
 //! pair_walk      two agents over all of their common time
+//! waits          who stood at the end of what was released, while who moved   HeldEntry
+//! profile        how near two agents were over time                            NearnessProfiles
 //! ```
 //!
 //! The types match the JSON output, field by field in this order. Intervals of distances contain the exact value: they are rounded
-//! outward. A contact is excluded only where the lower bound of the distance is above the sum of the radii, and proved only where the upper
-//! bound is below it, whatever the agents did within the stated bound.
+//! outward. A contact is excluded only where the lower bound of the distance of the bodies is above 0, and proved only where the upper bound
+//! is below it, whatever the agents did within the stated bound.
 
+mod body_pair;
 mod bounded_leg;
+mod convex_parts;
 mod leg_blocks;
 mod leg_pair;
+mod open_spans;
+#[cfg(test)]
+mod outline_tests;
 mod pair_walk;
+mod profile;
 #[cfg(test)]
 mod tests;
+mod waits;
 
 use crate::memory_budget::{self, MemoryBudget, MemoryError};
 use crate::parallel;
@@ -25,7 +37,9 @@ use leg_blocks::LegBlocks;
 use pair_walk::PairWalk;
 use pcr_formats::import::{BetweenPoses, PoseLog};
 use pcr_formats::scenario::Labels;
+pub use profile::{NearnessEntry, NearnessProfiles};
 use serde::Serialize;
+pub use waits::PassingEntry;
 
 /// The approaches of the agents of a record.
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -51,6 +65,9 @@ pub struct ApproachReport {
     /// The nearest approach of every pair, if asked for.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub closest: Option<Vec<NearestEntry>>,
+    /// When agents stood because the rest of their orders was not released, as far as the record tells; by the begins.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub waits: Vec<HeldEntry>,
     /// When nothing is known of an agent between its first pose and its last one: nothing is excluded then.
     pub gaps: Vec<GapEntry>,
     /// Warnings of the reader.
@@ -65,15 +82,21 @@ pub enum BetweenEntry {
     Deviation(f64),
     /// They went anywhere at up to this speed \[m/s\].
     TopSpeed(f64),
+    /// The same, and outlines turned at up to this rate \[m/s, rad/s\].
+    #[serde(rename = "top_speed_and_rotation")]
+    TopSpeedAndRotation([f64; 2]),
 }
 
 /// An agent of a record.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct TrackEntry {
     /// Its number.
     pub id: u64,
-    /// Radius of its disc \[m\].
+    /// Radius of its disc, or of that around its outline \[m\].
     pub radius: f64,
+    /// Corners of its outline, ahead and left \[m\], if it is no disc.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub outline: Option<Vec<[f64; 2]>>,
     /// Number of poses.
     pub poses: usize,
     /// Times of the first and the last one \[s\].
@@ -100,7 +123,7 @@ pub struct ApproachEntry {
     pub contacts: Vec<[f64; 2]>,
     /// Bounds of the least distance of the centres in that time \[m\].
     pub separation: [f64; 2],
-    /// Bounds of the least distance of the discs in that time, below 0 where they overlap \[m\].
+    /// Bounds of the least distance of the bodies in that time, below 0 where they overlap \[m\].
     pub clearance: [f64; 2],
 }
 
@@ -124,12 +147,23 @@ pub struct NearestEntry {
     /// Name of their map, where the file has names.
     #[serde(skip_serializing_if = "String::is_empty")]
     pub map: String,
-    /// When the straight motions between their poses are nearest \[s\].
+    /// When the bodies are nearest if motions between their poses are straight \[s\].
     pub t: f64,
     /// Bounds of the least distance of the centres \[m\].
     pub separation: [f64; 2],
-    /// Bounds of the least distance of the discs, below 0 where they overlap \[m\].
+    /// Bounds of the least distance of the bodies, below 0 where they overlap \[m\].
     pub clearance: [f64; 2],
+}
+
+/// A time in which an agent stood because the rest of its order was not released.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct HeldEntry {
+    /// Number of the agent.
+    pub id: u64,
+    /// Begin and end \[s\].
+    pub t: [f64; 2],
+    /// Who moved meanwhile, the nearest first, three at most.
+    pub passed: Vec<PassingEntry>,
 }
 
 /// A time in which nothing is known of an agent.
@@ -162,6 +196,7 @@ impl ApproachReport {
             let bytes = all.saturating_mul(size_of::<NearestEntry>());
             memory_budget::ask(bytes as u64, || format!("how near all {all} pairs come"))?;
         }
+        let waits = waits::of(log, &NearnessProfiles::new(log));
         let blocks = LegBlocks::all(log);
         let (mut approaches, mut nearest, mut pairs) = (Vec::new(), Vec::new(), 0);
         let mut held = MemoryBudget::default();
@@ -194,7 +229,8 @@ impl ApproachReport {
         let agents = tracks.map(|track| {
             let ends = [track.poses.first(), track.poses.last()].map(|pose| pose.map_or(0.0, |pose| pose.t));
             let longest = track.poses.windows(2).map(|pair| pair[1].t - pair[0].t).fold(0.0, f64::max);
-            TrackEntry { id: track.id, radius: track.radius, poses: track.poses.len(), t: ends, longest }
+            let outline = track.footprint.as_ref().map(|footprint| footprint.polygon().to_vec());
+            TrackEntry { id: track.id, radius: track.radius, outline, poses: track.poses.len(), t: ends, longest }
         });
         Ok(Self {
             name: name.to_owned(),
@@ -202,13 +238,15 @@ impl ApproachReport {
             origin: log.origin.clone(),
             between: match log.between {
                 BetweenPoses::Straight(deviation) => BetweenEntry::Deviation(deviation),
-                BetweenPoses::TopSpeed(speed) => BetweenEntry::TopSpeed(speed),
+                BetweenPoses::TopSpeed { speed, rotation: 0.0 } => BetweenEntry::TopSpeed(speed),
+                BetweenPoses::TopSpeed { speed, rotation } => BetweenEntry::TopSpeedAndRotation([speed, rotation]),
             },
             agents: agents.collect(),
             pairs,
             apart: count * count.saturating_sub(1) / 2 - pairs,
             approaches,
             closest: closest.then_some(nearest),
+            waits,
             gaps: gaps.collect(),
             warnings,
         })

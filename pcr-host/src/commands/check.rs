@@ -2,10 +2,11 @@
 
 use super::number::{ScalarArg, with_scalar};
 use super::scenario_command::{ScenarioCommand, run};
-use super::scenario_sources::{pose_text, sources, without_margin};
-use super::{CONFLICTS, CliError, OutputArgs, OutputFormat, UNDECIDED, acknowledge, warn};
+use super::scenario_sources::{keep_bag, pose_text, sources, without_margin};
+use super::{CONFLICTS, CliError, OutputArgs, OutputFormat, UNDECIDED, acknowledge, is_standard, warn, write_to};
 use crate::progress::ProgressLine;
 use clap::Args;
+use pcr_drawing::record_page;
 use pcr_formats::import::{ImportOptions, PoseOptions};
 use pcr_formats::input;
 use pcr_formats::scenario::{Scenario, label};
@@ -36,6 +37,7 @@ Examples:
   pcr check plan.json --certify             and a proof by another program
   pcr check -q plan.json && echo free       for scripts: by the exit status
   pcr check run.log --radius 0.4 --top-speed 2   a record of what ran
+  pcr check run.mcap --radius 0.4 --top-speed 2 -o run.html   a page about it
   pcr check - --format json < plans.jsonl   JSON Lines: a scenario on each line";
 
 /// Tell whether the agents collide, moving as the scenario says
@@ -53,6 +55,9 @@ pub(super) struct CheckArgs {
     /// Prove the answer by an independent checker (not in CSV)
     #[arg(long)]
     certify: bool,
+    /// A page about poses with times; `-` for standard output
+    #[arg(short, long, value_name = "FILE")]
+    output: Option<PathBuf>,
     /// Numbers: f64, f32, micro (f32 of microcontrollers), or fixed point: q20 (up to ±256 m and s), q16 (±4096), q12 (±65,536)
     #[arg(long, value_enum, value_name = "NUMBER", default_value_t = ScalarArg::F64, hide_possible_values = true)]
     scalar: ScalarArg,
@@ -79,7 +84,8 @@ impl CheckArgs {
             };
             return self.check_poses(file);
         }
-        if let Some(option) = self.poses.given().first() {
+        let output = self.output.as_ref().map(|_| "--output");
+        if let Some(option) = self.poses.given().first().copied().or(output) {
             let problem = format!("{option} has no effect: it is for poses with times, and the file holds none");
             return Err(CliError::arguments(problem));
         }
@@ -104,18 +110,29 @@ impl CheckArgs {
         if let Some((_, why)) = refusals.iter().find(|(is_given, _)| *is_given) {
             return Err(CliError::arguments(*why));
         }
-        let text = pose_text(file, import)?;
-        let (log, warnings) = input::read_poses(file, &text, import, options)?;
+        let (log, warnings) = if input::is_bag(file) {
+            keep_bag(file, import);
+            input::read_bag(file, import, options)?
+        } else {
+            input::read_poses(file, &pose_text(file, import)?, import, options)?
+        };
         warn(file, &warnings);
         let mut lines = warnings.all();
         acknowledge(&mut lines);
         let progress = ProgressLine::new(format!("{}: {} agents", file.display(), log.tracks.len()));
         let name = label(&input::stem(file));
         let told = |done, total| progress.set(done, total);
-        let report = ApproachReport::compute(&name, &log, self.closest && !printed.is_silent(), lines, &told)
+        let closest = (self.closest && !printed.is_silent()) || self.output.is_some();
+        let mut report = ApproachReport::compute(&name, &log, closest, lines, &told)
             .map_err(|large| CliError::wrong(file, large))?;
         drop(progress);
-        let mut out = printed.out(false);
+        if let Some(output) = &self.output {
+            write_to(output, &record_page::page(&report, &log))?;
+        }
+        if !self.closest {
+            report.closest = None;
+        }
+        let mut out = printed.out(is_standard(self.output.as_ref()));
         match printed.form() {
             OutputFormat::Json => report::json(&report, &mut out)?,
             _ => report::approaches_table(&report, &mut out)?,

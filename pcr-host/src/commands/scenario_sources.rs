@@ -86,6 +86,12 @@ pub(super) fn pose_text(file: &Path, import: &ImportOptions) -> Result<String, C
     Ok(text)
 }
 
+/// A bag is read piece by piece, and not to be replaced by something else.
+pub(super) fn keep_bag(file: &Path, import: &ImportOptions) {
+    keep(import);
+    output::keep(file);
+}
+
 /// Asks for the memory that it takes to read a file. Refuses a table of locks, which is no text.
 fn ask_for(file: &Path) -> Result<(), CliError> {
     if ExclusionIndex::is_one(file) {

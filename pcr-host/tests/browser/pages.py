@@ -8,7 +8,7 @@
 - on the page of locks every edge can be chosen with the keyboard, by its list and by the search, and it is printed at scale;
 - at 1400 by 900 px both pictures of a page are inside the window while it plays, and time goes on;
 - in maps and replays of many agents no number lies on another one or on a disc, and agents are found by their labels;
-- what a replay says below its pictures is what its data say about that time;
+- what a replay and the page of a record say below their pictures is what their data say about that time;
 - the texts of intervals contain them;
 - nothing moves by itself for who asked for less motion.
 
@@ -429,6 +429,28 @@ def check_replay(browser, name):
     return wrong + check_time(browser, name)
 
 
+def check_record(browser, name):
+    """What the page of a record says of a time is what its data say, and a click on the chart goes to its time."""
+    wrong = []
+    approach, ends = browser.value("data.pairs[0].approaches[0]"), browser.value("data.pairs[0].time")
+    contact, (begin, end) = approach["contacts"][0], approach["t"]
+    words = {(contact[0] + contact[1]) / 2: "There is a contact", (begin + contact[0]) / 2: "cannot be known", (ends[0] + begin) / 2: "A contact is excluded"}
+    for time, expected in words.items():
+        browser.value(f"show({time})")
+        said = browser.value("$('verdict').textContent")
+        wrong += [] if expected in said and f"{time:.2f} s" in said else [f"at {time:.2f} s: {said}"]
+    drawn = browser.value("JSON.stringify(view()) && agents.filter((_, k) => place(k, now)).length")
+    wrong += [] if drawn == 2 else [f"{drawn} vehicles are seen"]
+    # Halfway from pose to pose it is halfway.
+    off = browser.value("(() => { const a = place(0, 1), b = place(0, 1.5), c = place(0, 1.25); return Math.hypot(c.at[0] - (a.at[0] + b.at[0]) / 2, c.at[1] - (a.at[1] + b.at[1]) / 2) + (c.off > a.off ? 0 : 1); })()")
+    wrong += [] if off < 1e-9 else [f"between two poses it is off by {off}"]
+    browser.value("(() => { const box = $('nearness').getBoundingClientRect(); $('nearness').dispatchEvent(new MouseEvent('click', { clientX: box.left + 52 + (box.width - 64) / 2 })); })()")
+    middle = browser.value("now")
+    wrong += [] if abs(middle - sum(ends) / 2) < 0.02 else [f"a click in the middle of the chart goes to {middle} s"]
+    browser.value("show(first)")
+    return wrong + check_time(browser, name)
+
+
 def check_time(browser, name):
     """Both pictures are seen whole while time goes on."""
     wrong = []
@@ -490,7 +512,7 @@ def check(browser, name, page, folder):
     browser.open(page, 1400, "light")
     browser.page = page
     kinds = {"map": check_regions, "locks": check_locks, "audit": check_audit, "large": check_large, "live": check_live}
-    timed = {"replay": check_replay, "orca": check_crowd, "many": check_many}
+    timed = {"replay": check_replay, "orca": check_crowd, "many": check_many, "record": check_record}
     wrong += kinds[name](browser) if name in kinds else timed.get(name, check_time)(browser, name)
     wrong += browser.noise()
     return wrong, count
@@ -508,12 +530,14 @@ def main(tool, folder, *names):
     (folder / "large.xml").write_text(roadmap(43))
     run("locks", "large.xml", "--radius", 0.4, "-q", "-o", "large")
     run("simulate", "--foraging", "-o", "replay.html")
+    # A contact is proved: exit status 1.
+    subprocess.run([tool, "check", str(DATA / "bags/frames.mcap"), "--radius", "0.4", "--top-speed", "1.2", "-q", "-o", "record.html"], capture_output=True, cwd=folder, stdin=subprocess.DEVNULL)
     (folder / "many.json").write_text(json.dumps(many(60)))
     run("map", "many.json", "-q", "-o", "many")
     run("traffic", GRAPH, "--agents", 50, "--radius", 0.4, "-q", "-o", "fifty")
     # With collisions the exit status is 1.
     subprocess.run([tool, "simulate", "fifty/missions.json", "--controller", "orca", "-q", "-o", "orca.html"], capture_output=True, cwd=folder, stdin=subprocess.DEVNULL)
-    pages = {"map": "map/index.html", "many": "many/index.html", "orca": "orca.html", "traffic": "traffic/index.html", "locks": "locks/locks.html", "audit": "audit/audit.html", "large": "large/locks.html", "replay": "replay.html"}
+    pages = {"map": "map/index.html", "many": "many/index.html", "orca": "orca.html", "traffic": "traffic/index.html", "locks": "locks/locks.html", "audit": "audit/audit.html", "large": "large/locks.html", "replay": "replay.html", "record": "record.html"}
     pages = {name: folder / page for name, page in pages.items()}
     fleet = Fleet(tool)
     pages["live"] = fleet.address

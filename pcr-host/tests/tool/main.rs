@@ -25,6 +25,7 @@ mod output;
 mod plan;
 mod progress;
 mod readers;
+mod records;
 mod refusals;
 mod rules;
 mod schema;

@@ -84,6 +84,7 @@ fn every_output_fits_its_schema() {
         &["check", PAPER, "--certify"],
         &["check", &small("schedule.yaml"), "--radius", "0.35", "--closest"],
         &["check", &small("messages.log"), "--radius", "0.4", "--top-speed", "2"],
+        &["check", &small("held.log"), "--radius", "0.4", "--top-speed", "2"],
         &["regions", PAPER, "--certificate"],
         &["regions", PAPER, "--certificate", "--agent", "3"],
         &["certify", PAPER, "--limit"],

@@ -8,8 +8,11 @@
 //! trajectories    results of db-CBS (YAML)
 //! configurations  results of LaCAM (text)
 //! pose_table      tables with the columns id, t, x, y (CSV)
+//! bag             bags of ROS 2 (MCAP), with the feature `bags`
 //! ```
 
+#[cfg(feature = "bags")]
+mod bag;
 mod configurations;
 mod message_log;
 mod pose_log;
@@ -20,11 +23,12 @@ mod schedule;
 mod tests;
 mod trajectories;
 
-pub use pose_log::{PoseLog, PoseTrack, TimedPose};
+pub use pose_log::{HeldTime, PoseLog, PoseTrack, TimedPose};
 pub use pose_options::{BetweenPoses, PoseOptions};
 
 use super::{ImportError, ImportOptions, Warnings, given, is_empty};
 use crate::byte_order_mark::unmarked;
+use crate::footprint::Footprint;
 use crate::yaml::YamlDocument;
 use pose_log::PoseLogBuilder;
 
@@ -65,6 +69,42 @@ pub(super) fn are_in(text: &str) -> bool {
     PoseFormat::detect(text).is_some()
 }
 
+/// The first bytes of a bag of ROS 2 that is read.
+#[cfg(feature = "bags")]
+pub const BAG: &[u8] = bag::records::MAGIC;
+
+/// Reads the poses in a bag of ROS 2 (MCAP).
+///
+/// # Errors
+/// As [`poses`], also where the bag was cut, is damaged, or has poses of one vehicle on several topics.
+#[cfg(feature = "bags")]
+pub fn poses_in_bag(
+    source: &mut dyn std::io::Read,
+    options: &ImportOptions,
+    pose_options: &PoseOptions,
+    warnings: &mut Warnings,
+) -> Result<PoseLog, ImportError> {
+    pose_options.refuse_useless(false, true)?;
+    let mut log = builder(options, pose_options, warnings)?;
+    bag::read(source, pose_options, &mut log, warnings)?;
+    log.finish(warnings)
+}
+
+/// What collects the poses of agents of this size.
+fn builder<'o>(
+    options: &ImportOptions,
+    pose_options: &'o PoseOptions,
+    warnings: &mut Warnings,
+) -> Result<PoseLogBuilder<'o>, ImportError> {
+    let fleet = given(options, warnings)?;
+    warnings.use_option("fleet");
+    // A radius that is given is meant.
+    let footprint = fleet.footprint.filter(|_| options.radius.is_none());
+    pose_options.refuse_turns(footprint.is_some())?;
+    let radius = footprint.as_ref().map(Footprint::circumscribed_radius);
+    Ok(PoseLogBuilder::new(pose_options, options.radius.or(radius).or(fleet.radius), footprint))
+}
+
 /// Reads the poses in a text.
 ///
 /// # Errors
@@ -84,13 +124,8 @@ pub fn poses(
                      or a table with a header such as id,t,x,y";
         return Err(ImportError::new(format!("no poses with times; known are {known}")));
     };
-    pose_options.refuse_useless(format == PoseFormat::Trajectories)?;
-    let fleet = given(options, warnings)?;
-    if options.radius.is_none() && fleet.footprint.is_some() {
-        return Err(ImportError::new("poses are checked for discs, and the fleet has an outline; give --radius"));
-    }
-    warnings.use_option("fleet");
-    let mut log = PoseLogBuilder::new(pose_options, options.radius.or(fleet.radius));
+    pose_options.refuse_useless(format == PoseFormat::Trajectories, false)?;
+    let mut log = builder(options, pose_options, warnings)?;
     let text = unmarked(text);
     match format {
         PoseFormat::Messages => message_log::read(text, &mut log, warnings)?,

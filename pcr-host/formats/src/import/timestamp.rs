@@ -38,6 +38,12 @@ impl Timestamp {
         Self { whole, fraction: 0.0 }
     }
 
+    /// A part of a second later.
+    #[cfg(feature = "bags")]
+    pub(super) fn plus(self, fraction: f64) -> Self {
+        Self { fraction: self.fraction + fraction, ..self }
+    }
+
     /// Whole seconds, rounded down.
     pub(super) fn whole(self) -> i64 {
         self.whole

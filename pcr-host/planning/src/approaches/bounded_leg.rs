@@ -10,9 +10,14 @@
 //!
 //! and by the triangle inequality |p − n| ≤ (v + u) τ and (v + u) (T − τ). The least of these three bounds is attained, so it is the radius of
 //! the least disc around n that contains all places. It grows up to the middle of the time, and is symmetric about it.
+//!
+//! Where headings count, it would turn steadily by the shorter way, at a rate u. With a greatest rate w, its heading differs from that of the
+//! first pose by w τ at most, and so from the steady one by (w + |u|) τ; likewise before the second pose. An angle moves no point of a body
+//! farther than by that angle times its distance from the reference point.
 
 use pcr_formats::import::{BetweenPoses, PoseTrack, TimedPose};
 use pcr_formats::plane_geometry::distance;
+use std::f64::consts::{PI, TAU};
 
 /// An agent between two poses, or at one.
 #[derive(Clone, Copy, Debug)]
@@ -25,6 +30,10 @@ pub(super) struct BoundedLeg {
     constant: f64,
     /// v² − u², and v + u; both 0 where it goes straight. From above.
     speeds: [f64; 2],
+    /// Heading at both ends of the steady turn \[rad\]; 0 where headings do not count.
+    headings: [f64; 2],
+    /// w + |u|, from above \[rad/s\]; 0 where it turns steadily.
+    turning: f64,
 }
 
 /// What a few roundings add to a number.
@@ -34,7 +43,8 @@ impl BoundedLeg {
     /// An agent that stands.
     pub(super) fn standing(pose: &TimedPose, t: [f64; 2], between: BetweenPoses) -> Self {
         let constant = pose.error + deviation(between);
-        Self { t, ends: [pose.point; 2], map: pose.map, constant, speeds: [0.0; 2] }
+        let headings = [pose.heading.unwrap_or_default(); 2];
+        Self { t, ends: [pose.point; 2], map: pose.map, constant, speeds: [0.0; 2], headings, turning: 0.0 }
     }
 
     /// An agent between two poses.
@@ -42,7 +52,7 @@ impl BoundedLeg {
         let error = a.error.max(b.error);
         let speeds = match between {
             BetweenPoses::Straight(_) => [0.0; 2],
-            BetweenPoses::TopSpeed(top) => {
+            BetweenPoses::TopSpeed { speed: top, .. } => {
                 let duration = b.t - a.t;
                 let length = distance(a.point, b.point);
                 // With errors of the poses, the straight way may be shorter or longer than that between the points.
@@ -55,7 +65,15 @@ impl BoundedLeg {
             }
         };
         let constant = (error + deviation(between)) * (1.0 + FEW);
-        Self { t: [a.t, b.t], ends: [a.point, b.point], map: a.map, constant, speeds }
+        let [from, to] = [a, b].map(|pose| pose.heading.unwrap_or_default());
+        let turn = to - from;
+        let turn = turn - TAU * (turn / TAU).round();
+        let turning = match between {
+            BetweenPoses::Straight(_) => 0.0,
+            BetweenPoses::TopSpeed { rotation, .. } => (rotation + turn.abs() / (b.t - a.t)) * (1.0 + FEW),
+        };
+        let headings = [from, from + turn];
+        Self { t: [a.t, b.t], ends: [a.point, b.point], map: a.map, constant, speeds, headings, turning }
     }
 
     /// The legs of an agent in the order of time; before the first pose and after the last one it stands where the record says so.
@@ -96,6 +114,29 @@ impl BoundedLeg {
         [0, 1].map(|axis| a[axis] + (b[axis] - a[axis]) * part)
     }
 
+    /// Which way it would face, turning steadily \[rad\].
+    pub(super) fn heading_at(&self, t: f64) -> f64 {
+        let [from, to] = self.headings;
+        if from == to {
+            return from;
+        }
+        from + (to - from) * ((t - self.t[0]) / (self.t[1] - self.t[0])).clamp(0.0, 1.0)
+    }
+
+    /// How fast it would turn \[rad/s\], from above.
+    pub(super) fn turning_rate(&self) -> f64 {
+        let [from, to] = self.headings;
+        if from == to { 0.0 } else { (to - from).abs() / (self.t[1] - self.t[0]) * (1.0 + FEW) }
+    }
+
+    /// How far it may be turned from that \[rad\]: the most and the least in a time. Half a turn is any heading.
+    pub(super) fn turns(&self, [s, e]: [f64; 2]) -> [f64; 2] {
+        let at = |t: f64| (self.turning * (t - self.t[0]).min(self.t[1] - t).max(0.0) * (1.0 + FEW)).min(PI);
+        let middle = self.t[0] + 0.5 * (self.t[1] - self.t[0]);
+        let [first, last] = [s, e].map(at);
+        [at(middle.clamp(s, e)).max(first).max(last), first.min(last)]
+    }
+
     /// Rounding error of a position on each axis \[m\]: seven roundings, each of at most half of a machine epsilon of both ends.
     pub(super) fn rounding(&self) -> f64 {
         let [a, b] = self.ends;
@@ -134,6 +175,6 @@ impl BoundedLeg {
 fn deviation(between: BetweenPoses) -> f64 {
     match between {
         BetweenPoses::Straight(deviation) => deviation,
-        BetweenPoses::TopSpeed(_) => 0.0,
+        BetweenPoses::TopSpeed { .. } => 0.0,
     }
 }

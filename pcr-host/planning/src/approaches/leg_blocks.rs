@@ -1,7 +1,8 @@
 //! The legs of an agent, in blocks with boxes around them, so that agents that are far from one another are compared block by block.
 
 use super::bounded_leg::BoundedLeg;
-use pcr_formats::import::PoseLog;
+use super::convex_parts::ConvexParts;
+use pcr_formats::import::{PoseLog, PoseTrack};
 use std::ops::Range;
 
 /// Most legs of a block.
@@ -20,6 +21,8 @@ pub(super) struct LegBlock {
 /// The legs of an agent.
 pub(super) struct LegBlocks {
     pub(super) radius: f64,
+    /// Its outline, if it is no disc; it is within the radius.
+    pub(super) parts: Option<ConvexParts>,
     pub(super) legs: Vec<BoundedLeg>,
     pub(super) blocks: Vec<LegBlock>,
 }
@@ -30,11 +33,11 @@ impl LegBlocks {
         let times = || log.tracks.iter().flat_map(|track| &track.poses).map(|pose| pose.t);
         let span = [times().fold(f64::INFINITY, f64::min), times().fold(f64::NEG_INFINITY, f64::max)];
         let stands = log.stands_at_ends.then_some(span);
-        let of = |track| Self::new(BoundedLeg::all(track, log.between, stands), track.radius);
+        let of = |track| Self::new(BoundedLeg::all(track, log.between, stands), track);
         log.tracks.iter().map(of).collect()
     }
 
-    fn new(legs: Vec<BoundedLeg>, radius: f64) -> Self {
+    fn new(legs: Vec<BoundedLeg>, track: &PoseTrack) -> Self {
         let mut blocks: Vec<LegBlock> = Vec::new();
         for (k, leg) in legs.iter().enumerate() {
             let grown = leg.most() + leg.rounding();
@@ -54,7 +57,8 @@ impl LegBlocks {
                 _ => blocks.push(LegBlock { legs: k..k + 1, t: leg.t, map: leg.map, area }),
             }
         }
-        Self { radius, legs, blocks }
+        let parts = track.footprint.as_ref().map(ConvexParts::new);
+        Self { radius: track.radius, parts, legs, blocks }
     }
 }
 

@@ -5,15 +5,13 @@
 //! itself, and it holds whatever rounding has done to q.
 
 use super::bounded_leg::BoundedLeg;
+use super::open_spans::{BoundedDistance, DistanceBounds, LeastDistance, OpenSpan};
 
 /// Distances that differ by less are not told apart \[m\].
 const TOLERANCE: f64 = 1e-9;
 
 /// How far the bounds of a least distance may be apart for a search that can bring them nearer \[m\].
 const CLOSE: f64 = 1e-6;
-
-/// Halves of halves of a time, after which it is not divided any more.
-const DEEPEST: u32 = 60;
 
 /// Relative rounding of a length.
 const FEW: f64 = 8.0 * f64::EPSILON;
@@ -23,65 +21,16 @@ pub(super) struct LegPair<'a> {
     legs: [&'a BoundedLeg; 2],
     /// Rounding error of a distance \[m\].
     rounding: f64,
-    /// Sum of the radii, from below and from above \[m\].
+    /// Sum of the radii, as it is, from below and from above \[m\].
+    radii: f64,
     limit: [f64; 2],
-}
-
-/// Bounds of the distance in a time.
-struct DistanceBounds {
-    /// Least distance of the straight motions, from below \[m\].
-    near: f64,
-    /// Largest one, from above \[m\].
-    far: f64,
-    /// When it is least \[s\].
-    t: f64,
-    /// By how much both deviate at most and at least \[m\].
-    deviations: [f64; 2],
-}
-
-/// A time in which a contact is proved, or not known.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct OpenSpan {
-    pub(super) t: [f64; 2],
-    pub(super) is_contact: bool,
-    /// Bounds of the least distance in that time \[m\].
-    pub(super) separation: [f64; 2],
-}
-
-/// Bounds of a least distance.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct LeastDistance {
-    /// \[m\]
-    pub(super) lower: f64,
-    /// \[m\]
-    pub(super) upper: f64,
-    /// When the straight motions are nearest, how near \[s, m\], and on which map.
-    pub(super) straight: (f64, f64),
-    pub(super) map: usize,
-    /// What the lower bound can become at most \[m\].
-    attained: f64,
-}
-
-impl LeastDistance {
-    pub(super) const NONE: Self = Self {
-        lower: f64::INFINITY,
-        upper: f64::INFINITY,
-        straight: (0.0, f64::INFINITY),
-        map: 0,
-        attained: f64::INFINITY,
-    };
-
-    /// Distance beyond which nothing is of interest \[m\].
-    pub(super) fn farthest(&self) -> f64 {
-        self.attained
-    }
 }
 
 impl<'a> LegPair<'a> {
     pub(super) fn new(legs: [&'a BoundedLeg; 2], radii: f64) -> Self {
         // Both positions on both axes, and their difference.
         let rounding = 2.0 * (legs[0].rounding() + legs[1].rounding());
-        Self { legs, rounding, limit: [radii * (1.0 - f64::EPSILON), radii * (1.0 + f64::EPSILON)] }
+        Self { legs, rounding, radii, limit: [radii * (1.0 - f64::EPSILON), radii * (1.0 + f64::EPSILON)] }
     }
 
     /// The time in which both are on their legs, if there is one.
@@ -106,58 +55,11 @@ impl<'a> LegPair<'a> {
         self.legs.iter().map(|leg| leg.deviation_at(t)).sum::<f64>() * (1.0 + FEW)
     }
 
-    fn bounds(&self, [s, e]: [f64; 2]) -> DistanceBounds {
-        let [from, to] = [s, e].map(|t| self.offset(t));
-        let way = [to[0] - from[0], to[1] - from[1]];
-        let square = dot(way, way);
-        let part = if square > 0.0 { (-dot(from, way) / square).clamp(0.0, 1.0) } else { 0.0 };
-        let nearest = [from[0] + part * way[0], from[1] + part * way[1]];
-        let norm = length(nearest);
-        let lengths = length(from) + length(to);
-        let near = if norm > 0.0 {
-            let line = nearest.map(|value| value / norm);
-            let least = dot(line, from).min(dot(line, to));
-            (least - FEW * lengths - self.rounding).max(0.0)
-        } else {
-            0.0
-        };
-        let far = length(from).max(length(to)) * (1.0 + FEW) + self.rounding;
-        let [a, b] = self.legs.map(|leg| BoundedLeg::deviations([s, e], leg));
-        let deviations = [(a[0] + b[0]) * (1.0 + FEW), a[1] + b[1]];
-        DistanceBounds { near, far, t: (s + part * (e - s)).clamp(s, e), deviations }
-    }
-
-    /// Adds the times in which a contact is not excluded, in their order.
-    pub(super) fn open_spans(&self, time: [f64; 2], spans: &mut Vec<OpenSpan>) {
-        self.divide(time, 0, spans);
-    }
-
-    fn divide(&self, time: [f64; 2], depth: u32, spans: &mut Vec<OpenSpan>) {
-        let DistanceBounds { near, far, t, deviations: [most, least] } = self.bounds(time);
-        let lower = (near - most) * (1.0 - FEW);
-        if lower > self.limit[1] {
-            return;
-        }
-        let is_contact = (far + most) * (1.0 + FEW) < self.limit[0];
-        let tolerance = TOLERANCE + 4.0 * self.rounding;
-        let is_never_excluded = far - least <= self.limit[1] + tolerance;
-        let is_never_proved = near + least >= self.limit[0] - tolerance;
-        let middle = time[0] + 0.5 * (time[1] - time[0]);
-        let is_short = depth >= DEEPEST || middle <= time[0] || middle >= time[1];
-        if is_contact || is_short || (is_never_excluded && is_never_proved) {
-            let upper = self.distance_at(t) + self.deviation_at(t);
-            spans.push(OpenSpan { t: time, is_contact, separation: [lower.max(0.0), upper] });
-            return;
-        }
-        self.divide([time[0], middle], depth + 1, spans);
-        self.divide([middle, time[1]], depth + 1, spans);
-    }
-
     /// Brings what is known of the least distance up to date.
     pub(super) fn update(&self, time: [f64; 2], least: &mut LeastDistance) {
         let bounds = self.bounds(time);
         self.sample(bounds.t, least);
-        let lower = ((bounds.near - bounds.deviations[0]) * (1.0 - FEW)).max(0.0);
+        let lower = bounds.lower().max(0.0);
         let is_enough = |least: &LeastDistance| lower >= least.attained - CLOSE - 4.0 * self.rounding;
         let lower = if is_enough(least) { lower } else { lower.max(self.least_gap(time, least)) };
         least.lower = least.lower.min(lower);
@@ -217,6 +119,48 @@ impl<'a> LegPair<'a> {
         ];
         lines.into_iter().fold(f64::INFINITY, f64::min)
     }
+}
+
+impl BoundedDistance for LegPair<'_> {
+    fn bounds(&self, [s, e]: [f64; 2]) -> DistanceBounds {
+        let [from, to] = [s, e].map(|t| self.offset(t));
+        let way = [to[0] - from[0], to[1] - from[1]];
+        let square = dot(way, way);
+        let part = if square > 0.0 { (-dot(from, way) / square).clamp(0.0, 1.0) } else { 0.0 };
+        let nearest = [from[0] + part * way[0], from[1] + part * way[1]];
+        let norm = length(nearest);
+        let lengths = length(from) + length(to);
+        let near = if norm > 0.0 {
+            let line = nearest.map(|value| value / norm);
+            let least = dot(line, from).min(dot(line, to));
+            (least - FEW * lengths - self.rounding).max(0.0)
+        } else {
+            0.0
+        };
+        let far = length(from).max(length(to)) * (1.0 + FEW) + self.rounding;
+        let [a, b] = self.legs.map(|leg| BoundedLeg::deviations([s, e], leg));
+        let deviations = [(a[0] + b[0]) * (1.0 + FEW), a[1] + b[1]];
+        DistanceBounds { near, far, t: (s + part * (e - s)).clamp(s, e), deviations }
+    }
+
+    fn limit(&self) -> [f64; 2] {
+        self.limit
+    }
+
+    fn tolerance(&self) -> f64 {
+        TOLERANCE + 4.0 * self.rounding
+    }
+
+    fn span(&self, time: [f64; 2], bounds: &DistanceBounds, is_contact: bool) -> OpenSpan {
+        let upper = self.distance_at(bounds.t) + self.deviation_at(bounds.t);
+        let separation = [bounds.lower().max(0.0), upper];
+        OpenSpan { t: time, is_contact, separation, clearance: apart(separation, self.radii) }
+    }
+}
+
+/// Bounds of the distance of discs with this sum of radii, by those of their centres \[m\].
+pub(super) fn apart([lower, upper]: [f64; 2], radii: f64) -> [f64; 2] {
+    [(lower - radii).next_down(), (upper - radii).next_up()]
 }
 
 fn dot(a: [f64; 2], b: [f64; 2]) -> f64 {

@@ -6,14 +6,28 @@ use pcr_formats::scenario::{Agent, PlacedSegment, Scenario};
 use pcr_formats::splitmix64::SplitMix64;
 
 fn track(id: u64, radius: f64, poses: &[(f64, [f64; 2])]) -> PoseTrack {
-    let pose =
-        |(k, &(t, point)): (usize, &(f64, [f64; 2]))| TimedPose { t, point, error: 0.0, map: 0, is_joined: k > 0 };
-    PoseTrack { id, radius, poses: poses.iter().enumerate().map(pose).collect() }
+    let pose = |(k, &(t, point)): (usize, &(f64, [f64; 2]))| TimedPose {
+        t,
+        point,
+        heading: None,
+        error: 0.0,
+        map: 0,
+        is_joined: k > 0,
+    };
+    PoseTrack { id, radius, footprint: None, poses: poses.iter().enumerate().map(pose).collect() }
 }
 
 fn report(tracks: Vec<PoseTrack>, between: BetweenPoses) -> ApproachReport {
     let maps = vec![String::new()];
-    let log = PoseLog { labels: Labels::default(), origin: None, maps, tracks, stands_at_ends: false, between };
+    let log = PoseLog {
+        labels: Labels::default(),
+        origin: None,
+        maps,
+        tracks,
+        held: Vec::new(),
+        stands_at_ends: false,
+        between,
+    };
     ApproachReport::compute("", &log, true, Vec::new(), &|_, _| {}).unwrap()
 }
 
@@ -137,7 +151,7 @@ fn ways_within_the_top_speed_are_within_the_bounds() {
         let ((seen, true_way), (other_seen, other_way)) = (way(1), way(2));
         let ways = [&seen, &other_seen].map(|track| [track.poses[0].point, track.poses[1].point]);
         let truth = report(vec![true_way, other_way], BetweenPoses::Straight(0.0));
-        let bounds = report(vec![seen, other_seen], BetweenPoses::TopSpeed(top));
+        let bounds = report(vec![seen, other_seen], BetweenPoses::TopSpeed { speed: top, rotation: 0.0 });
         let [truly, bound] = [&truth, &bounds].map(|report| report.closest.as_ref().unwrap()[0].clearance);
         assert!(bound[0] <= truly[1] && truly[0] <= bound[1], "{bound:?} {truly:?}");
         assert!((bound[0] - least_gap(&ways, top)).abs() < 1e-4, "{bound:?}");

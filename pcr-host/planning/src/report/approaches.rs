@@ -35,6 +35,10 @@ pub fn approaches_table(report: &ApproachReport, out: &mut dyn Write) -> io::Res
         BetweenEntry::TopSpeed(speed) => {
             writeln!(out, "Between two poses, up to {longest} s: any way at up to {} m/s", exact(speed))?;
         }
+        BetweenEntry::TopSpeedAndRotation([speed, rotation]) => {
+            let [speed, rotation] = [speed, rotation].map(exact);
+            writeln!(out, "Between two poses, up to {longest} s: any way at up to {speed} m/s and {rotation} rad/s")?;
+        }
     }
     if let Some(origin) = &report.origin {
         writeln!(out, "Times count from {origin}")?;
@@ -55,6 +59,24 @@ pub fn approaches_table(report: &ApproachReport, out: &mut dyn Write) -> io::Res
             let proved = approach.contacts.iter().map(|[from, to]| format!("{}-{}", above(*from), below(*to)));
             row.push(proved.collect::<Vec<_>>().join(" "));
             columns.row(row);
+        }
+        columns.write(out)?;
+    }
+    if !report.waits.is_empty() {
+        writeln!(out, "\nStood because the rest of the order was not released:")?;
+        let titles = ["<agent", "t from [s]", "to [s]", "<meanwhile moved", "way [m]", "clearance from [m]", "to [m]"];
+        let mut columns = TextTable::new(&titles);
+        for wait in &report.waits {
+            let [from, to] = outward(wait.t);
+            let own = vec![display_name(&report.labels, wait.id), from, to];
+            if wait.passed.is_empty() {
+                columns.row([own.clone(), vec!["nobody".into(), String::new(), String::new(), String::new()]].concat());
+            }
+            for passing in &wait.passed {
+                let [lower, upper] = outward(passing.clearance);
+                let name = display_name(&report.labels, passing.id);
+                columns.row([own.clone(), vec![name, thousandths(passing.way), lower, upper]].concat());
+            }
         }
         columns.write(out)?;
     }

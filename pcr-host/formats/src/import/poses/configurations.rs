@@ -56,7 +56,7 @@ pub(super) fn read(text: &str, log: &mut PoseLogBuilder<'_>) -> Result<(), Impor
             }
             let (agent, map) = (log.agent(&k.to_string()), log.map(""));
             let (time, point) = (PoseTime::seconds(steps as f64), cell.map(f64::from));
-            log.add(agent, RawPose { time, point, error: 0.0, map, is_joined: true, place })?;
+            log.add(agent, RawPose { time, point, heading: None, error: 0.0, map, is_joined: true, place })?;
         }
         before = cells.into_iter().map(|(cell, _)| cell).collect();
         steps += 1;

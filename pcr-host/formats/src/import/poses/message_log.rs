@@ -59,6 +59,9 @@ struct VehicleClock {
     least_lag: Option<f64>,
     /// Whether its next pose follows the one before.
     is_lost: bool,
+    /// Since when it has stood at the end of what was released, and its last state.
+    held: Option<PoseTime>,
+    last_state: Option<PoseTime>,
 }
 
 /// Reads the messages in a text.
@@ -97,8 +100,23 @@ pub(super) fn read(text: &str, log: &mut PoseLogBuilder<'_>, warnings: &mut Warn
         let message = JsonObject::new(kind.text(), &value).map_err(placed)?;
         read_message(&line, kind, &message, number, &mut clocks, log, warnings).map_err(placed)?;
     }
+    for (agent, clock) in clocks.iter().enumerate() {
+        if let (Some(since), Some(last)) = (clock.held, clock.last_state) {
+            log.add_held(agent, [since, last]);
+        }
+    }
     warn_of_clocks(&clocks, log, warnings);
     Ok(())
+}
+
+/// Whether a vehicle stands and has nodes ahead, none of which is released; nothing where a state does not tell.
+fn is_held(state: &JsonObject<'_>) -> Result<Option<bool>, ImportError> {
+    let Some(is_driving) = state.flag("driving")? else { return Ok(None) };
+    let mut nodes = Vec::new();
+    for node in state.list("nodeStates")? {
+        nodes.push(JsonObject::new("node", node)?.flag("released")?);
+    }
+    Ok(Some(!is_driving && !nodes.is_empty() && nodes.iter().all(|released| *released == Some(false))))
 }
 
 fn read_message(
@@ -144,6 +162,17 @@ fn read_message(
         let lag = received.since(&time);
         clock.least_lag = Some(clock.least_lag.map_or(lag, |least| least.min(lag)));
     }
+    if kind == TopicKind::State {
+        clock.last_state = Some(time);
+        match (is_held(message)?, clock.held) {
+            (Some(true), None) => clock.held = Some(time),
+            (Some(false), Some(since)) => {
+                clock.held = None;
+                log.add_held(agent, [since, time]);
+            }
+            _ => {}
+        }
+    }
     let Some(position) = vda5050::position(message)? else { return Ok(()) };
     if message.get("agvPosition").is_some() && message.get("mobileRobotPosition").is_some() {
         return Err(message.error("both agvPosition and mobileRobotPosition"));
@@ -160,10 +189,11 @@ fn read_message(
     }
     let map = position.text("mapId")?.ok_or_else(|| position.missing("mapId"))?;
     let point = position.point()?;
+    let heading = position.number("theta")?;
     let is_joined = !std::mem::take(&mut clock.is_lost);
     let map = log.map(map);
     let error = deviation.unwrap_or(0.0);
-    log.add(agent, RawPose { time, point, error, map, is_joined, place: (number, None) })
+    log.add(agent, RawPose { time, point, heading, error, map, is_joined, place: (number, None) })
 }
 
 /// Warns of vehicles whose clocks differ from those of the others.

@@ -3,6 +3,7 @@
 use super::super::timestamp::Timestamp;
 use super::super::{ImportError, WarningCode, Warnings};
 use super::{BetweenPoses, PoseOptions};
+use crate::footprint::Footprint;
 use crate::plane_geometry::distance;
 use crate::scenario::{Labels, label};
 use crate::vda5050::timestamp::written;
@@ -21,6 +22,8 @@ pub struct TimedPose {
     pub t: f64,
     /// \[m\]
     pub point: [f64; 2],
+    /// Which way it faces \[rad\], where that is said.
+    pub heading: Option<f64>,
     /// How far the agent may be from the point at this time \[m\].
     pub error: f64,
     /// Index of its map.
@@ -34,10 +37,21 @@ pub struct TimedPose {
 pub struct PoseTrack {
     /// Number of the agent.
     pub id: u64,
-    /// Radius of its disc \[m\].
+    /// Radius of its disc \[m\]; with a footprint that of the disc around all of it.
     pub radius: f64,
+    /// Its outline, if it is no disc: every pose has a heading then.
+    pub footprint: Option<Footprint>,
     /// By time, at least one, no two of the same time.
     pub poses: Vec<TimedPose>,
+}
+
+/// A time in which an agent stood because the rest of its order was not released.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct HeldTime {
+    /// Number of the agent.
+    pub id: u64,
+    /// From the first message that says so to the first that does not, or the last one of all \[s\].
+    pub t: [f64; 2],
 }
 
 /// Poses of several agents.
@@ -51,6 +65,8 @@ pub struct PoseLog {
     pub maps: Vec<String>,
     /// By the numbers of the agents, at least one.
     pub tracks: Vec<PoseTrack>,
+    /// When agents stood at the end of what was released to them, by the begins; where the format tells that.
+    pub held: Vec<HeldTime>,
     /// Whether agents stand at their first and last pose before and after it.
     pub stands_at_ends: bool,
     /// Where agents may be between their poses.
@@ -58,7 +74,7 @@ pub struct PoseLog {
 }
 
 /// A time as it is written.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct PoseTime {
     stamp: Timestamp,
     /// \[s\], where it is a number.
@@ -77,6 +93,15 @@ impl PoseTime {
         Some(Self { stamp: Timestamp::of_seconds(text.trim(), seconds), seconds: Some(seconds) })
     }
 
+    /// Seconds and nanoseconds since 1970, or since the begin of a simulation.
+    #[cfg(feature = "bags")]
+    pub(super) fn since_1970(seconds: i64, nanoseconds: i64) -> Option<Self> {
+        let fraction = 1e-9 * nanoseconds as f64;
+        let is_time = (0..1_000_000_000).contains(&nanoseconds);
+        let stamp = Timestamp::of_whole(seconds).plus(fraction);
+        is_time.then_some(Self { stamp, seconds: Some(seconds as f64 + fraction) })
+    }
+
     pub(super) fn seconds(seconds: f64) -> Self {
         Self { stamp: Timestamp::of_seconds("", seconds), seconds: Some(seconds) }
     }
@@ -91,7 +116,7 @@ impl PoseTime {
     }
 }
 
-/// Line and character, counted from 1.
+/// Line and character, counted from 1; of a bag the number of the message.
 pub(super) type TextPlace = (usize, Option<usize>);
 
 /// A pose as it was read.
@@ -99,6 +124,8 @@ pub(super) type TextPlace = (usize, Option<usize>);
 pub(super) struct RawPose {
     pub(super) time: PoseTime,
     pub(super) point: [f64; 2],
+    /// \[rad\]
+    pub(super) heading: Option<f64>,
     pub(super) error: f64,
     pub(super) map: usize,
     /// Whether the agent was localized since the pose before.
@@ -133,11 +160,16 @@ impl NameIndex {
 pub(super) struct PoseLogBuilder<'o> {
     options: &'o PoseOptions,
     radius: Option<f64>,
+    footprint: Option<Footprint>,
     agents: NameIndex,
     map_index: NameIndex,
     maps: Vec<String>,
     tracks: Vec<OpenTrack>,
+    /// Agents that were held, from when to when.
+    held: Vec<(usize, [PoseTime; 2])>,
     count: usize,
+    /// Whether places are numbers of messages, and not lines.
+    pub(super) counts_messages: bool,
     /// Whether the times of an agent may go back in the file.
     pub(super) is_unordered: bool,
     pub(super) stands_at_ends: bool,
@@ -146,15 +178,18 @@ pub(super) struct PoseLogBuilder<'o> {
 }
 
 impl<'o> PoseLogBuilder<'o> {
-    pub(super) fn new(options: &'o PoseOptions, radius: Option<f64>) -> Self {
+    pub(super) fn new(options: &'o PoseOptions, radius: Option<f64>, footprint: Option<Footprint>) -> Self {
         Self {
             options,
             radius,
+            footprint,
             agents: NameIndex::default(),
             map_index: NameIndex::default(),
             maps: Vec::new(),
             tracks: Vec::new(),
+            held: Vec::new(),
             count: 0,
+            counts_messages: false,
             is_unordered: false,
             stands_at_ends: false,
             is_straight: false,
@@ -198,24 +233,43 @@ impl<'o> PoseLogBuilder<'o> {
         }
     }
 
+    /// Notes that an agent was held.
+    pub(super) fn add_held(&mut self, agent: usize, times: [PoseTime; 2]) {
+        self.held.push((agent, times));
+    }
+
     /// The pose of an agent before the next one.
     pub(super) fn last(&self, agent: usize) -> Option<&RawPose> {
         self.tracks.get(agent)?.poses.last()
     }
 
+    /// What is wrong at a place.
+    fn error_at(&self, (number, column): TextPlace, problem: String) -> ImportError {
+        if self.counts_messages {
+            ImportError::new(format!("message {number}: {problem}"))
+        } else {
+            ImportError::at(number, column, problem)
+        }
+    }
+
+    /// A place in the middle of a sentence.
+    fn said(&self, (number, _): TextPlace) -> String {
+        format!("{} {number}", if self.counts_messages { "message" } else { "line" })
+    }
+
     /// Adds a pose.
     pub(super) fn add(&mut self, agent: usize, pose: RawPose) -> Result<(), ImportError> {
-        let (line, column) = pose.place;
         self.count += 1;
         if self.count > MOST {
-            return Err(ImportError::at(line, column, format!("more than {MOST} poses up to here")));
+            return Err(self.error_at(pose.place, format!("more than {MOST} poses up to here")));
         }
         if !self.is_unordered
             && let Some(last) = self.last(agent)
             && pose.time.since(&last.time) < 0.0
         {
-            let problem = format!("{}: its time goes back, from that of line {}", self.name(agent), last.place.0);
-            return Err(ImportError::at(line, column, problem));
+            let before = self.said(last.place);
+            let problem = format!("{}: its time goes back, from that of {before}", self.name(agent));
+            return Err(self.error_at(pose.place, problem));
         }
         if let Some(track) = self.tracks.get_mut(agent) {
             track.poses.push(pose);
@@ -260,16 +314,23 @@ impl<'o> PoseLogBuilder<'o> {
         };
         let (ids, labels) = self.numbers();
         let mut tracks = Vec::with_capacity(self.tracks.len());
-        for (track, id) in self.tracks.iter().zip(ids) {
+        for (track, &id) in self.tracks.iter().zip(&ids) {
             let mut poses: Vec<TimedPose> = Vec::with_capacity(track.poses.len());
             for raw in &track.poses {
+                if self.footprint.is_some() && raw.heading.is_none() {
+                    let problem = format!(
+                        "agent {}: no heading, on which its outline depends; --radius takes it as a disc",
+                        track.name
+                    );
+                    return Err(self.error_at(raw.place, problem));
+                }
                 let t = time(&raw.time);
                 let before = poses.last();
                 let is_near = |before: &TimedPose| {
                     before.map == raw.map && self.options.gap.is_none_or(|gap| t - before.t <= gap)
                 };
                 let is_joined = raw.is_joined && before.is_some_and(is_near);
-                if let (true, Some(before), BetweenPoses::TopSpeed(speed)) = (is_joined, before, between) {
+                if let (true, Some(before), BetweenPoses::TopSpeed { speed, .. }) = (is_joined, before, between) {
                     let least = distance(before.point, raw.point) - before.error - raw.error;
                     let duration = t - before.t;
                     // Rounding is no contradiction.
@@ -278,17 +339,23 @@ impl<'o> PoseLogBuilder<'o> {
                             "agent {}: {least:.3} m from the pose before, in {duration:.3} s; at --top-speed {speed} it does not get here",
                             track.name
                         );
-                        return Err(ImportError::at(raw.place.0, raw.place.1, problem));
+                        return Err(self.error_at(raw.place, problem));
                     }
                 }
-                poses.push(TimedPose { t, point: raw.point, error: raw.error, map: raw.map, is_joined });
+                let RawPose { point, heading, error, map, .. } = *raw;
+                poses.push(TimedPose { t, point, heading, error, map, is_joined });
             }
             let radius = track.radius.or(self.radius).unwrap_or_default();
-            tracks.push(PoseTrack { id, radius, poses });
+            tracks.push(PoseTrack { id, radius, footprint: self.footprint.clone(), poses });
         }
+        let held = self.held.iter().filter_map(|(agent, times)| {
+            Some(HeldTime { id: *ids.get(*agent)?, t: [time(&times[0]), time(&times[1])] })
+        });
+        let mut held: Vec<HeldTime> = held.collect();
+        held.sort_by(|a, b| a.t[0].total_cmp(&b.t[0]).then(a.id.cmp(&b.id)));
         tracks.sort_by_key(|track| track.id);
         let maps = if self.maps.is_empty() { vec![String::new()] } else { self.maps };
-        Ok(PoseLog { labels, origin, maps, tracks, stands_at_ends: self.stands_at_ends, between })
+        Ok(PoseLog { labels, origin, maps, tracks, held, stands_at_ends: self.stands_at_ends, between })
     }
 
     /// Orders the poses of an agent by time, of which no two are the same.
@@ -297,23 +364,30 @@ impl<'o> PoseLogBuilder<'o> {
         let Some(track) = self.tracks.get_mut(agent) else { return Ok(()) };
         track.poses.sort_by(|a, b| a.time.since(&b.time).total_cmp(&0.0));
         let mut kept: Vec<RawPose> = Vec::with_capacity(track.poses.len());
-        for pose in track.poses.drain(..) {
+        let poses = std::mem::take(&mut track.poses);
+        for pose in poses {
             match kept.last_mut() {
                 Some(last) if pose.time.since(&last.time) == 0.0 => {
-                    if (pose.point, pose.map) != (last.point, last.map) {
-                        let (line, column) = pose.place;
-                        let problem = format!("{name}: at the same time as in line {}, at another place", last.place.0);
-                        return Err(ImportError::at(line, column, problem));
+                    if (pose.point, pose.map) != (last.point, last.map) || differ(pose.heading, last.heading) {
+                        let before = self.said(last.place);
+                        return Err(self.error_at(
+                            pose.place,
+                            format!("{name}: at the same time as in {before}, at another place"),
+                        ));
                     }
                     warnings.add(WarningCode::GivenTwice, &name, "a pose is there twice");
                     last.error = last.error.min(pose.error);
+                    last.heading = last.heading.or(pose.heading);
                     last.is_joined &= pose.is_joined;
                 }
                 _ => kept.push(pose),
             }
         }
-        track.poses = kept;
-        if track.poses.is_empty() {
+        let is_empty = kept.is_empty();
+        if let Some(track) = self.tracks.get_mut(agent) {
+            track.poses = kept;
+        }
+        if is_empty {
             return Err(ImportError::new(format!("{name}: no pose of it is known")));
         }
         Ok(())
@@ -332,4 +406,9 @@ impl<'o> PoseLogBuilder<'o> {
             }
         }
     }
+}
+
+/// Whether two headings are said and are not the same.
+fn differ(a: Option<f64>, b: Option<f64>) -> bool {
+    a.zip(b).is_some_and(|(a, b)| a != b)
 }

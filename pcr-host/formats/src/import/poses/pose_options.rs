@@ -14,12 +14,18 @@ pub struct PoseOptions {
     /// Any way between poses, no faster (poses)
     #[cfg_attr(feature = "clap", arg(long, value_name = "M/S", value_parser = positive))]
     pub top_speed: Option<f64>,
+    /// Turns no faster between poses (poses of outlines, rad/s)
+    #[cfg_attr(feature = "clap", arg(long, value_name = "RAD/S", value_parser = positive))]
+    pub top_rotation: Option<f64>,
     /// Longest time between joined poses (poses)
     #[cfg_attr(feature = "clap", arg(long, value_name = "S", value_parser = positive))]
     pub gap: Option<f64>,
     /// Time between two states (results of db-CBS)
     #[cfg_attr(feature = "clap", arg(long, value_name = "S", value_parser = positive))]
     pub step: Option<f64>,
+    /// Only topics of this name, or ending with it (bags of ROS 2)
+    #[cfg_attr(feature = "clap", arg(long = "topic", value_name = "NAME"))]
+    pub topics: Vec<String>,
     /// Numbers in place of names (poses)
     #[cfg_attr(feature = "clap", arg(long))]
     pub anonymous: bool,
@@ -28,10 +34,15 @@ pub struct PoseOptions {
 /// Where an agent may be between two of its poses.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum BetweenPoses {
-    /// No farther from the straight line at constant speed than this \[m\].
+    /// No point of it is farther than this from where it is if it goes straight at constant speed and turns steadily by the shorter way \[m\].
     Straight(f64),
-    /// Wherever it gets from one pose and to the next at this speed \[m/s\]: within an ellipse.
-    TopSpeed(f64),
+    /// Wherever it gets from one pose and to the next.
+    TopSpeed {
+        /// At this speed: within an ellipse \[m/s\].
+        speed: f64,
+        /// Turning at this rate; 0 for discs, of which it does not matter \[rad/s\].
+        rotation: f64,
+    },
 }
 
 impl PoseOptions {
@@ -40,16 +51,21 @@ impl PoseOptions {
         let all = [
             ("--deviation", self.deviation.is_some()),
             ("--top-speed", self.top_speed.is_some()),
+            ("--top-rotation", self.top_rotation.is_some()),
             ("--gap", self.gap.is_some()),
             ("--step", self.step.is_some()),
+            ("--topic", !self.topics.is_empty()),
             ("--anonymous", self.anonymous),
         ];
         all.into_iter().filter(|(_, given)| *given).map(|(option, _)| option).collect()
     }
 
-    pub(super) fn refuse_useless(&self, has_steps: bool) -> Result<(), ImportError> {
+    pub(super) fn refuse_useless(&self, has_steps: bool, has_topics: bool) -> Result<(), ImportError> {
         if self.step.is_some() && !has_steps {
             return Err(ImportError::new("--step has no effect: the file has its own times"));
+        }
+        if !self.topics.is_empty() && !has_topics {
+            return Err(ImportError::new("--topic has no effect: it is for bags of ROS 2"));
         }
         match (self.deviation, self.top_speed) {
             (Some(_), Some(_)) => Err(ImportError::new("give --deviation or --top-speed, not both")),
@@ -57,8 +73,24 @@ impl PoseOptions {
         }
     }
 
+    /// Refuses what does not fit vehicles that have outlines, or have none.
+    pub(super) fn refuse_turns(&self, has_outlines: bool) -> Result<(), ImportError> {
+        match (self.top_rotation, self.top_speed, has_outlines) {
+            (None, Some(_), true) => Err(ImportError::new(
+                "how fast vehicles turn between two poses, on which their outlines depend, is not in the file; give --top-rotation",
+            )),
+            (Some(_), Some(_), true) | (None, ..) => Ok(()),
+            (Some(_), None, _) => Err(ImportError::new("--top-rotation has no effect without --top-speed")),
+            (Some(_), Some(_), false) => {
+                Err(ImportError::new("--top-rotation has no effect: it is for outlines, and discs have no heading"))
+            }
+        }
+    }
+
     /// Returns the bound on where agents are between two poses, if an option gives one.
     pub(super) fn between(&self) -> Option<BetweenPoses> {
-        self.deviation.map(BetweenPoses::Straight).or(self.top_speed.map(BetweenPoses::TopSpeed))
+        let rotation = self.top_rotation.unwrap_or_default();
+        let top_speed = self.top_speed.map(|speed| BetweenPoses::TopSpeed { speed, rotation });
+        self.deviation.map(BetweenPoses::Straight).or(top_speed)
     }
 }

@@ -106,10 +106,7 @@ fn read_row(
         return Err(ImportError::at(number, place(byte), "seconds among time stamps, or the other way round"));
     }
     let point = [value(PoseColumn::X)?, value(PoseColumn::Y)?];
-    if columns.contains(&PoseColumn::Heading) {
-        // Discs have no heading, but what is no number is no pose.
-        value(PoseColumn::Heading)?;
-    }
+    let heading = columns.contains(&PoseColumn::Heading).then(|| value(PoseColumn::Heading)).transpose()?;
     let agent = log.agent(id.0);
     if columns.contains(&PoseColumn::Radius) {
         let (text, byte) = field(PoseColumn::Radius);
@@ -123,5 +120,5 @@ fn read_row(
         })?;
     }
     let map = log.map(field(PoseColumn::Map).0);
-    log.add(agent, RawPose { time, point, error: 0.0, map, is_joined: true, place: (number, Some(1)) })
+    log.add(agent, RawPose { time, point, heading, error: 0.0, map, is_joined: true, place: (number, Some(1)) })
 }

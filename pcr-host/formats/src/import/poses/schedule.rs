@@ -38,7 +38,7 @@ pub(super) fn read(
                 log.is_straight &= moved == 0.0 || (moved <= 1.0 && time.since(&last.time) == 1.0);
             }
             let map = log.map("");
-            log.add(agent, RawPose { time, point, error: 0.0, map, is_joined: true, place })?;
+            log.add(agent, RawPose { time, point, heading: None, error: 0.0, map, is_joined: true, place })?;
         }
     }
     Ok(())

@@ -44,7 +44,7 @@ pub(super) fn read(
             };
             let place = (state.position.line as usize, Some(state.position.column as usize));
             let (time, map) = (PoseTime::seconds(index as f64 * step), log.map(""));
-            log.add(agent, RawPose { time, point: [x, y], error: 0.0, map, is_joined: true, place })?;
+            log.add(agent, RawPose { time, point: [x, y], heading: None, error: 0.0, map, is_joined: true, place })?;
         }
     }
     Ok(())
