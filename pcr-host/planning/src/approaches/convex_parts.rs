@@ -53,7 +53,7 @@ impl ConvexPart {
     fn signed_distance(&self, other: &Self) -> f64 {
         // The direction in which polygons overlap least is across a side; of those that do not overlap, a side or two corners are nearest.
         let beside = self.beside(other).max(other.beside(self));
-        let between = if beside <= 0.0 { beside } else { self.from_sides(other).min(other.from_sides(self)) };
+        let between = if beside <= 0.0 { beside } else { self.to_sides(other).min(other.to_sides(self)) };
         between - self.radius - other.radius
     }
 
@@ -74,11 +74,11 @@ impl ConvexPart {
             }
         }
         let are_points = self.corners.len() == 1 && other.corners.len() == 1;
-        if are_points { self.from_sides(other) } else { most }
+        if are_points { self.to_sides(other) } else { most }
     }
 
-    /// The distance of the corners of this one from the sides of the other.
-    fn from_sides(&self, other: &Self) -> f64 {
+    /// The distance of the corners of this one to the sides of the other.
+    fn to_sides(&self, other: &Self) -> f64 {
         let mut least = f64::INFINITY;
         for p in &self.corners {
             for [a, b] in other.sides() {
