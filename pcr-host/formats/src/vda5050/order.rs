@@ -3,6 +3,7 @@
 use super::decode::DecodeError;
 use super::header::message;
 use super::messages::Action;
+use super::version::ProtocolVersion;
 use serde::{Deserialize, Serialize};
 use serde_json::{Map, Value};
 
@@ -100,6 +101,26 @@ pub struct OrderEdge {
     /// All other fields, kept unchanged.
     #[serde(flatten)]
     pub rest: Map<String, Value>,
+}
+
+/// The fields with the largest speed on an edge: up to 2.1, and in 3.0.
+const MAX_SPEED: [&str; 2] = ["maxSpeed", "maximumSpeed"];
+
+impl OrderEdge {
+    /// The largest speed on it \[m/s\], if it says one in the name of any edition.
+    pub fn max_speed(&self) -> Option<f64> {
+        MAX_SPEED.iter().filter_map(|name| self.rest.get(*name)?.as_f64()).reduce(f64::min)
+    }
+
+    /// Sets the largest speed on it \[m/s\], for a vehicle of this edition; what is not known counts as 2.1.
+    pub fn set_max_speed(&mut self, speed: f64, version: Option<ProtocolVersion>) {
+        for name in MAX_SPEED {
+            self.rest.remove(name);
+        }
+        let [before, after] = MAX_SPEED;
+        let name = if version == Some(ProtocolVersion::V3_0) { after } else { before };
+        self.rest.insert(name.into(), speed.into());
+    }
 }
 
 impl Order {

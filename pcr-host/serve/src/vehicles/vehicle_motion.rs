@@ -76,6 +76,16 @@ const SLIGHT: f64 = 0.01;
 /// Lengths that differ by at most this are equal \[m\].
 const NEAR: f64 = 1e-6;
 
+/// The largest speed at a place of a way, so that it can brake to the limits of all edges ahead in time \[m/s\].
+fn speed_limit(way: &OrderPath, held: &OrderState, at: f64, can: &SimulatedTraits) -> f64 {
+    let limits = held.edges.iter().enumerate().filter_map(|(k, edge)| {
+        let (begin, end, speed) = (way.node(k)?, way.node(k + 1)?, edge.max_speed()?);
+        // An edge is behind it as soon as it has left the place of its end.
+        (end > at + NEAR).then(|| (speed.max(0.0).powi(2) + 2.0 * can.acceleration * (begin - at).max(0.0)).sqrt())
+    });
+    limits.fold(f64::INFINITY, f64::min)
+}
+
 impl DriveState {
     /// A vehicle at the start of a way.
     pub(crate) fn new() -> Self {
@@ -121,7 +131,8 @@ impl DriveState {
             return;
         }
         let before = self.speed;
-        let after = (before + can.acceleration * time).min(can.speed).min((2.0 * can.acceleration * left).sqrt());
+        let most = can.speed.min(speed_limit(way, held, self.at, can));
+        let after = (before + can.acceleration * time).min(most).min((2.0 * can.acceleration * left).sqrt());
         let step = 0.5 * (before + after) * time * (1.0 - can.slip * random.unit());
         self.speed = after;
         self.at = if step >= left { stop } else { self.at + step };

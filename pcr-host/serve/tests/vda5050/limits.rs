@@ -1,9 +1,13 @@
 //! Areas in which the speed is limited, and orders of vehicles.
 
+use crate::pair::{CAN, key};
 use crate::puppet::Puppet;
 use pcr_formats::vda5050::topics::TopicKind;
+use pcr_formats::vda5050::version::ProtocolVersion;
 use pcr_serve::closed_area::ClosedArea;
 use pcr_serve::owned_path::StartPose;
+use pcr_serve::vehicles::vehicle::SimulatedVehicle;
+use pcr_serve::vehicles::vehicle_motion::SimulatedTraits;
 use serde_json::{Value, json};
 
 /// A disc about a point of the way.
@@ -87,4 +91,50 @@ fn edges_that_are_not_released_get_the_limit_and_of_others_the_manager_is_told()
     }
     own.lasts(3.0);
     assert!(errors(&own, "speedLimit").is_empty() && errors(&own, "limited").is_empty(), "{}", own.told);
+}
+
+#[test]
+fn vehicles_of_every_edition_are_told_in_its_name() {
+    for version in ProtocolVersion::ALL {
+        let mut own = Puppet::of(version);
+        own.supervisor.close(slow("gate", 60.0, 0.5)).unwrap();
+        own.manager(TopicKind::Order, order());
+        own.lasts(1.0);
+        let (_, sent) = own.got.iter().rev().find(|(kind, _)| *kind == TopicKind::Order).expect("an order");
+        let edge = sent["edges"].as_array().unwrap().iter().find(|edge| edge["edgeId"] == "e1").expect("the edge");
+        let [own_name, other] = match version {
+            ProtocolVersion::V3_0 => ["maximumSpeed", "maxSpeed"],
+            _ => ["maxSpeed", "maximumSpeed"],
+        };
+        assert_eq!((edge[own_name].as_f64(), edge.get(other)), (Some(0.5), None), "{version:?}: {sent}");
+    }
+}
+
+/// It brakes before the edge, and speeds up behind it.
+#[test]
+fn simulated_vehicles_keep_to_the_speed_of_an_edge() {
+    for (version, name) in [(ProtocolVersion::V2_1, "maxSpeed"), (ProtocolVersion::V3_0, "maximumSpeed")] {
+        let can = SimulatedTraits { slip: 0.0, drift: 0.0, delay: 0.0, ..CAN };
+        let start = StartPose { x: 0.0, y: 0.0, heading: 0.0 };
+        let mut vehicle = SimulatedVehicle::new(key(), version, "map", can, start, 1);
+        let mut order = order();
+        order["edges"][2].as_object_mut().unwrap().remove("maxSpeed");
+        order["edges"][1][name] = json!(0.25);
+        let header = json!({ "headerId": 1, "timestamp": "2030-01-01T00:00:00.000Z", "version": version.text(),
+            "manufacturer": key().manufacturer, "serialNumber": key().serial_number });
+        order.as_object_mut().unwrap().extend(header.as_object().unwrap().clone());
+        vehicle.receive(TopicKind::Order, order.to_string().as_bytes());
+        assert_eq!(vehicle.taken(), 1, "{version:?}");
+        let (mut fastest, mut before) = ([0.0_f64; 3], 0.0);
+        for _ in 0..40_000 {
+            vehicle.advance(0.02);
+            let [x, _] = vehicle.true_position();
+            let edge = ((before / 40.0) as usize).min(2);
+            fastest[edge] = fastest[edge].max((x - before) / 0.02);
+            before = x;
+        }
+        assert!((before - 120.0).abs() < 1e-3, "{version:?}: at {before} m");
+        let [first, slow, last] = fastest;
+        assert!(slow < 0.26 && slow > 0.24 && first > 0.9 * can.speed && last > 0.9 * can.speed, "{fastest:?}");
+    }
 }

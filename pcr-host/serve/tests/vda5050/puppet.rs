@@ -23,21 +23,28 @@ pub(crate) struct Puppet {
     pub(crate) got: Vec<(TopicKind, Value)>,
     /// What the manager was told last.
     pub(crate) told: Value,
+    version: ProtocolVersion,
     number: u64,
 }
 
 impl Puppet {
     /// At (0, 0), without an order.
     pub(crate) fn new() -> Self {
+        Self::of(ProtocolVersion::V2_1)
+    }
+
+    /// The same of an edition.
+    pub(crate) fn of(version: ProtocolVersion) -> Self {
         let supervisor = Supervisor::new(settings(), Box::new(NullStore));
         let bridge = bridge_of(&supervisor);
         let pose = json!({ "x": 0.0, "y": 0.0, "theta": 0.0, "mapId": "map", "positionInitialized": true });
-        let state = json!({ "version": "2.1.0", "manufacturer": "sim", "serialNumber": "001", "orderId": "",
+        let place = if version == ProtocolVersion::V3_0 { "mobileRobotPosition" } else { "agvPosition" };
+        let state = json!({ "version": version.text(), "manufacturer": "sim", "serialNumber": "001", "orderId": "",
             "orderUpdateId": 0, "lastNodeId": "", "lastNodeSequenceId": 0, "nodeStates": [], "edgeStates": [],
             "driving": false, "paused": false, "actionStates": [], "errors": [], "operatingMode": "AUTOMATIC",
-            "agvPosition": pose });
+            place: pose });
         let (got, told) = (Vec::new(), Value::Null);
-        let mut own = Self { supervisor, bridge, time: 0.0, state, lists: true, got, told, number: 0 };
+        let mut own = Self { supervisor, bridge, time: 0.0, state, lists: true, got, told, version, number: 0 };
         own.lasts(1.0);
         own
     }
@@ -67,7 +74,7 @@ impl Puppet {
     }
 
     pub(crate) fn hears(&mut self, state: &Value) {
-        let topic = interfaces()[1].topic(ProtocolVersion::V2_1, &key(), TopicKind::State);
+        let topic = interfaces()[1].topic(self.version, &key(), TopicKind::State);
         self.bridge.receive(&mut self.supervisor, &topic, state.to_string().as_bytes(), self.time);
         self.turn();
     }
@@ -129,14 +136,14 @@ impl Puppet {
     /// What the manager says.
     pub(crate) fn manager(&mut self, kind: TopicKind, message: Value) {
         let message = self.signed(message);
-        let topic = interfaces()[0].topic(ProtocolVersion::V2_1, &key(), kind);
+        let topic = interfaces()[0].topic(self.version, &key(), kind);
         self.bridge.receive(&mut self.supervisor, &topic, message.to_string().as_bytes(), self.time);
         self.turn();
     }
 
     /// A message of the manager with its header.
     pub(crate) fn signed(&self, mut message: Value) -> Value {
-        let header = json!({ "headerId": 1, "timestamp": "2030-01-01T00:00:00.000Z", "version": "2.1.0",
+        let header = json!({ "headerId": 1, "timestamp": "2030-01-01T00:00:00.000Z", "version": self.version.text(),
             "manufacturer": "sim", "serialNumber": "001" });
         message.as_object_mut().unwrap().extend(header.as_object().unwrap().clone());
         message

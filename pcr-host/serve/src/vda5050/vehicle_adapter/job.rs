@@ -9,6 +9,7 @@ use crate::supervisor::JournalError;
 use pcr_formats::vda5050::order::{NodePosition, OrderEdge, OrderNode};
 use pcr_formats::vda5050::order_state::OrderState;
 use pcr_formats::vda5050::state::State;
+use pcr_formats::vda5050::version::ProtocolVersion;
 use serde::{Deserialize, Serialize};
 use serde_json::{Map, Value};
 
@@ -50,9 +51,6 @@ pub struct VehicleAcknowledgement {
     /// Update ids of the update that the vehicle has: its own and the manager's.
     pub acknowledged: Option<(u64, u64)>,
 }
-
-/// The field of an edge with the largest speed on it \[m/s\].
-pub(super) const MAX_SPEED: &str = "maxSpeed";
 
 /// Key of the note about that.
 pub(super) const RECEIVED: &str = "received";
@@ -356,7 +354,8 @@ impl ActiveOrder {
         if from.between || to.between {
             edge.rest.remove("length");
         }
-        lower_speed(&mut edge, if released { to.speed } else { self.limit_between(from.length, to.length) });
+        let limit = if released { to.speed } else { self.limit_between(from.length, to.length) };
+        lower_speed(&mut edge, limit, &self.version);
         Some(edge)
     }
 
@@ -368,7 +367,6 @@ impl ActiveOrder {
 
 /// Limits the allowed deviation at a node to what the margin covers.
 fn limit(position: &mut NodePosition, deviation: f64, version: &str) {
-    use pcr_formats::vda5050::version::ProtocolVersion;
     let allowed = position.deviation().ok().flatten().unwrap_or(deviation).min(deviation);
     let (name, value) = match ProtocolVersion::parse(version) {
         Some(ProtocolVersion::V2_0) => ("allowedDeviationXy", Value::from(allowed)),
@@ -382,10 +380,10 @@ fn limit(position: &mut NodePosition, deviation: f64, version: &str) {
     }
     position.rest.insert(name.into(), value);
 }
-/// Lowers the speed of an edge.
-fn lower_speed(edge: &mut OrderEdge, speed: Option<f64>) {
-    let own = edge.rest.get(MAX_SPEED).and_then(Value::as_f64);
-    if let Some(speed) = speed.filter(|speed| own.is_none_or(|own| *speed < own)) {
-        edge.rest.insert(MAX_SPEED.into(), speed.into());
+
+/// Lowers the speed of an edge \[m/s\], for a vehicle of this edition.
+fn lower_speed(edge: &mut OrderEdge, speed: Option<f64>, version: &str) {
+    if let Some(speed) = speed.filter(|speed| edge.max_speed().is_none_or(|own| *speed < own)) {
+        edge.set_max_speed(speed, ProtocolVersion::parse(version));
     }
 }

@@ -1,15 +1,14 @@
-//! Areas in which the speed is limited: the edges that a vehicle has not been released yet get a lower `maxSpeed`. A base cannot be changed, so the
+//! Areas in which the speed is limited: the edges that a vehicle has not been released yet get a lower speed. A base cannot be changed, so the
 //! manager is told of the edges that the vehicle has already with a higher one.
 
 use super::VehicleAdapter;
-use super::job::{ActiveOrder, MAX_SPEED};
+use super::job::ActiveOrder;
 use crate::closed_area::SpeedLimit;
 use crate::owned_path::OwnedPath;
 use crate::robot::SupervisedRobot;
 use crate::supervisor::Supervisor;
 use pcr_formats::vda5050::order::OrderEdge;
 use pcr_formats::vda5050::state::{ErrorEntry, State};
-use serde_json::Value;
 
 impl VehicleAdapter {
     /// Takes the limits that hold now. The manager is told at once of what cannot be changed any more.
@@ -71,8 +70,7 @@ impl ActiveOrder {
         let mut found: Vec<(&SpeedLimit, &OrderEdge)> = Vec::new();
         for pair in self.stops.get(place..).unwrap_or_default().windows(2) {
             let Some(edge) = self.order.edges.get(pair[0].node) else { continue };
-            let own = edge.rest.get(MAX_SPEED).and_then(Value::as_f64);
-            let known = [pair[1].speed, own].into_iter().flatten().fold(fastest, f64::min);
+            let known = [pair[1].speed, edge.max_speed()].into_iter().flatten().fold(fastest, f64::min);
             let is_unknown = |limit: &&SpeedLimit| {
                 limit.length[0] < pair[1].length && limit.length[1] > pair[0].length && limit.speed < known
             };
