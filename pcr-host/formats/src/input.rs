@@ -280,6 +280,23 @@ pub fn is_bag(file: &Path) -> bool {
         && head == import::BAG
 }
 
+/// Refuses a bag that nothing reads, with what to do. Standard input is not read for that.
+///
+/// # Errors
+/// [`InputError::Bag`].
+pub fn refuse_bag(file: &Path) -> Result<(), InputError> {
+    let longest = BAGS.iter().map(|(magic, _)| magic.len()).max().unwrap_or_default();
+    let mut head = Vec::new();
+    if fs::metadata(file).is_ok_and(|there| there.is_file())
+        && let Ok(opened) = fs::File::open(file)
+        && opened.take(longest as u64).read_to_end(&mut head).is_ok()
+        && let Some((_, what)) = BAGS.iter().find(|(magic, _)| head.starts_with(magic))
+    {
+        return Err(InputError::Bag(named(file), what));
+    }
+    Ok(())
+}
+
 /// Reads the poses in a bag of ROS 2, and warnings about them.
 ///
 /// # Errors

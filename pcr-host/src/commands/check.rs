@@ -84,6 +84,7 @@ impl CheckArgs {
             };
             return self.check_poses(file);
         }
+        files.iter().try_for_each(|file| input::refuse_bag(file))?;
         let output = self.output.as_ref().map(|_| "--output");
         if let Some(option) = self.poses.given().first().copied().or(output) {
             let problem = format!("{option} has no effect: it is for poses with times, and the file holds none");

@@ -214,7 +214,14 @@ fn refused_words_come_with_a_tip() {
         (&["plan", "--version"], "tip: pcr --version\n"),
         (&[PAPER], "tip: pcr check /"),
         (&["plan", PAPER, "-o", "-x.json"], "tip: what begins with - is given with an equals sign: -o=-x.json\n"),
-        (&["check", "-o", "x"], "tip: this command writes no file; its answer goes to standard output: > FILE\n"),
+        (
+            &["check", PAPER, "-o", "x"],
+            "pcr: --output has no effect: it is for poses with times, and the file holds none\n",
+        ),
+        (
+            &["certify", PAPER, "-o", "x"],
+            "tip: this command writes no file; its answer goes to standard output: > FILE\n",
+        ),
         (&["regions", PAPER, "--output=x"], "tip: this command writes no file"),
         (&["locks", &layout, "--audit", "zones.json"], "with an equals sign: --audit=FILE\n"),
         (&["locks", &layout, "--write", "nav2"], "tip: the output is the file to be written, such as -o guarded"),

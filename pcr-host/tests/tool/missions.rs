@@ -103,7 +103,7 @@ fn zones_of_the_layout_are_closed_and_speeds_limited() {
     let node = missions("node.jsonl", "{\"node\": 60, \"at\": 0, \"speed\": 1}");
     let error = run(&["traffic", WAREHOUSE, "--hours", "0.1", "--radius", "0.4", "--closures", &node, "-q"]).failed(2);
     assert!(
-        error.starts_with(&format!("pcr: {node}:1:31: speed: a limit is of an edge, or of a zone with edges")),
+        error.starts_with(&format!("pcr: {node}:1:32: speed: a limit is of an edge, or of a zone with edges")),
         "{error}"
     );
 }

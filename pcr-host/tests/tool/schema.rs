@@ -67,7 +67,7 @@ fn every_output_fits_its_schema() {
         {"id": 1, "to": 5, "via": [3], "due": 9}
         {"id": 2, "to": 0, "vehicle": 2}
         {"kind": "closure", "node": 7, "at": 3, "until": 9}
-        {"kind": "closure", "edge": 26, "at": 3, "speed": 0.2}
+        {"kind": "closure", "edge": 100, "at": 3, "speed": 0.2}
         {"kind": "breakdown", "vehicle": 1, "at": 5}"#;
     let lines: Vec<Value> = day.lines().map(|line| serde_json::from_str(line).unwrap()).collect();
     assert_eq!(lines.iter().flat_map(|line| faults(&closed(schema("pcr-mission-lines")), line)).count(), 0);

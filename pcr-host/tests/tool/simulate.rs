@@ -224,7 +224,7 @@ fn a_turn_in_place_at_the_end_is_over_when_the_mission_is_done() {
 #[test]
 fn room_that_is_missing_is_told_with_what_would_do() {
     for beside in [0.5041, 0.5025] {
-        let stands = json!({ "id": 2, "radius": 0.25, "start": { "x": 0.0, "y": beside, "heading": 0.0 }, "path": [] });
+        let stands = json!({ "id": 2, "radius": 0.25, "v_max": 1, "a_max": 1, "start": { "x": 0.0, "y": beside, "heading": 0.0 }, "path": [] });
         let scenario = json!({ "agents": [straight(1, [-2.0, 0.0, 0.0], 4.0), stands] });
         let name = file("simulate", "beside.json", scenario.to_string());
         let ask = ["simulate", &name, "--controller", "pcr"];
@@ -245,7 +245,7 @@ fn room_that_is_missing_is_told_with_what_would_do() {
         assert!(told.contains(&format!("or --drift {:.4}, would do", (1e4 * drift).floor() * 1e-4)), "{told}");
     }
     // In the way also without any error.
-    let stands = json!({ "id": 2, "radius": 0.25, "start": { "x": 0.0, "y": 0.3, "heading": 0.0 }, "path": [] });
+    let stands = json!({ "id": 2, "radius": 0.25, "v_max": 1, "a_max": 1, "start": { "x": 0.0, "y": 0.3, "heading": 0.0 }, "path": [] });
     let scenario = json!({ "agents": [straight(1, [-2.0, 0.0, 0.0], 4.0), stands] });
     let name = file("simulate", "within.json", scenario.to_string());
     let told = run(&["simulate", &name, "--controller", "pcr"]).ok();

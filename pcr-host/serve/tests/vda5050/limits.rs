@@ -2,6 +2,7 @@
 
 use crate::pair::{CAN, key};
 use crate::puppet::Puppet;
+use crate::site::at_broker;
 use pcr_formats::vda5050::topics::TopicKind;
 use pcr_formats::vda5050::version::ProtocolVersion;
 use pcr_serve::closed_area::ClosedArea;
@@ -61,7 +62,8 @@ fn errors(own: &Puppet, kind: &str) -> Vec<String> {
 
 #[test]
 fn edges_that_are_not_released_get_the_limit_and_of_others_the_manager_is_told() {
-    let mut own = Puppet::new();
+    // It is not granted all of its way at once.
+    let mut own = Puppet::of(ProtocolVersion::V2_1, at_broker());
     // Before the order: all of it is sent with the limit, also where the edge is slow already.
     own.supervisor.close(slow("gate", 60.0, 0.5)).unwrap();
     own.supervisor.close(slow("door", 100.0, 0.4)).unwrap();
@@ -96,7 +98,7 @@ fn edges_that_are_not_released_get_the_limit_and_of_others_the_manager_is_told()
 #[test]
 fn vehicles_of_every_edition_are_told_in_its_name() {
     for version in ProtocolVersion::ALL {
-        let mut own = Puppet::of(version);
+        let mut own = Puppet::of(version, at_broker());
         own.supervisor.close(slow("gate", 60.0, 0.5)).unwrap();
         own.manager(TopicKind::Order, order());
         own.lasts(1.0);

@@ -7,7 +7,7 @@ use pcr_formats::vda5050::topics::TopicKind;
 use pcr_formats::vda5050::version::ProtocolVersion;
 use pcr_serve::journal_entry::NullStore;
 use pcr_serve::robot::SupervisedRobot;
-use pcr_serve::supervisor::Supervisor;
+use pcr_serve::supervisor::{Supervisor, SupervisorConfig};
 use pcr_serve::vda5050::bridge::Vda5050Bridge;
 use serde_json::{Value, json};
 
@@ -30,12 +30,12 @@ pub(crate) struct Puppet {
 impl Puppet {
     /// At (0, 0), without an order.
     pub(crate) fn new() -> Self {
-        Self::of(ProtocolVersion::V2_1)
+        Self::of(ProtocolVersion::V2_1, settings())
     }
 
-    /// The same of an edition.
-    pub(crate) fn of(version: ProtocolVersion) -> Self {
-        let supervisor = Supervisor::new(settings(), Box::new(NullStore));
+    /// The same of an edition, with a supervisor that has these settings.
+    pub(crate) fn of(version: ProtocolVersion, settings: SupervisorConfig) -> Self {
+        let supervisor = Supervisor::new(settings, Box::new(NullStore));
         let bridge = bridge_of(&supervisor);
         let pose = json!({ "x": 0.0, "y": 0.0, "theta": 0.0, "mapId": "map", "positionInitialized": true });
         let place = if version == ProtocolVersion::V3_0 { "mobileRobotPosition" } else { "agvPosition" };

@@ -14,7 +14,7 @@ pub struct PoseOptions {
     /// Any way between poses, no faster (poses)
     #[cfg_attr(feature = "clap", arg(long, value_name = "M/S", value_parser = positive))]
     pub top_speed: Option<f64>,
-    /// Turns no faster between poses (poses of outlines, rad/s)
+    /// Turns no faster between poses (poses)
     #[cfg_attr(feature = "clap", arg(long, value_name = "RAD/S", value_parser = positive))]
     pub top_rotation: Option<f64>,
     /// Longest time between joined poses (poses)
@@ -23,7 +23,7 @@ pub struct PoseOptions {
     /// Time between two states (results of db-CBS)
     #[cfg_attr(feature = "clap", arg(long, value_name = "S", value_parser = positive))]
     pub step: Option<f64>,
-    /// Only topics of this name, or ending with it (bags of ROS 2)
+    /// Topics of this name only (bags of ROS 2)
     #[cfg_attr(feature = "clap", arg(long = "topic", value_name = "NAME"))]
     pub topics: Vec<String>,
     /// Numbers in place of names (poses)
