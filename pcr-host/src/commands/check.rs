@@ -33,11 +33,9 @@ Exit status:
 const EXAMPLES: &str = "\
 Examples:
   pcr check plan.json                       who collides when, where, how deep
-  pcr check plan.json --closest             and how near every two agents come
-  pcr check plan.json --certify             and a proof by another program
+  pcr check plan.json --closest --certify   how near they come, and a proof
   pcr check -q plan.json && echo free       for scripts: by the exit status
-  pcr check run.log --radius 0.4 --top-speed 2   a record of what ran
-  pcr check run.mcap --radius 0.4 --top-speed 2 -o run.html   a page about it
+  pcr check run.mcap --radius 0.4 --top-speed 2 -o run.html   what ran, and a page
   pcr check - --format json < plans.jsonl   JSON Lines: a scenario on each line";
 
 /// Tell whether the agents collide, moving as the scenario says
@@ -49,7 +47,7 @@ pub(super) struct CheckArgs {
     files: Vec<PathBuf>,
     #[command(flatten)]
     printed: OutputArgs,
-    /// Add how near every two agents come, and when (not in CSV)
+    /// Also how near every two agents come (not in CSV)
     #[arg(long)]
     closest: bool,
     /// Prove the answer by an independent checker (not in CSV)

@@ -228,19 +228,20 @@ fn room_that_is_missing_is_told_with_what_would_do() {
         let scenario = json!({ "agents": [straight(1, [-2.0, 0.0, 0.0], 4.0), stands] });
         let name = file("simulate", "beside.json", scenario.to_string());
         let ask = ["simulate", &name, "--controller", "pcr"];
-        let waiting = run(&[&ask[..], &["--json", "-q"]].concat()).json()["runs"][0]["waiting_for"][0].clone();
+        let first_run = |more: &[&str]| {
+            let answer = run(&[&ask[..], &["--json", "-q"], more].concat()).out;
+            serde_json::from_str::<serde_json::Value>(&answer).unwrap()["runs"][0].clone()
+        };
+        let waiting = first_run(&[])["waiting_for"][0].clone();
         assert_eq!((&waiting["id"], &waiting["by"]), (&json!(1), &json!(2)), "{waiting}");
         let number = |key: &str| waiting["clearance"][key].as_f64().unwrap();
         let (free, needed) = (number("free"), number("needed"));
         assert!((free - (beside - 0.5)).abs() < 1e-5 && needed >= 0.005, "{waiting}");
-        let told = run(&ask).ok();
+        let told = run(&ask).out;
         assert!(told.contains("pcr: 1 never set off, as 2 stands too near its way: 0.00"), "{told}");
         // With the drift that is named it arrives, and with a little more it does not.
         let drift = number("drift");
-        let with = |drift: f64| {
-            let drift = format!("{drift:.6}");
-            run(&[&ask[..], &["--json", "-q", "--drift", &drift]].concat()).json()["runs"][0]["done"].clone()
-        };
+        let with = |drift: f64| first_run(&["--drift", &format!("{drift:.6}")])["done"].clone();
         assert_eq!([with(drift - 1e-6), with(drift + 1e-4)], [json!(1), json!(0)], "{waiting}");
         assert!(told.contains(&format!("or --drift {:.4}, would do", (1e4 * drift).floor() * 1e-4)), "{told}");
     }
@@ -248,6 +249,6 @@ fn room_that_is_missing_is_told_with_what_would_do() {
     let stands = json!({ "id": 2, "radius": 0.25, "v_max": 1, "a_max": 1, "start": { "x": 0.0, "y": 0.3, "heading": 0.0 }, "path": [] });
     let scenario = json!({ "agents": [straight(1, [-2.0, 0.0, 0.0], 4.0), stands] });
     let name = file("simulate", "within.json", scenario.to_string());
-    let told = run(&["simulate", &name, "--controller", "pcr"]).ok();
+    let told = run(&["simulate", &name, "--controller", "pcr"]).out;
     assert!(told.contains("pcr: 1 never set off, as 2 stands in its way\n"), "{told}");
 }

@@ -53,8 +53,7 @@ pub(crate) fn bridge_of(supervisor: &Supervisor) -> Vda5050Bridge {
 
 /// A supervisor that goes on with the journal of a killed one, and its bridge.
 pub(crate) fn restarted(killed: &mut Supervisor) -> (Supervisor, Vda5050Bridge) {
-    let supervisor =
-        Supervisor::restored(*killed.settings(), killed.snapshot().unwrap(), Box::new(NullStore)).unwrap();
+    let supervisor = Supervisor::restored(*killed.settings(), killed.snapshot().unwrap(), Box::new(NullStore)).unwrap();
     let bridge = bridge_of(&supervisor);
     (supervisor, bridge)
 }
