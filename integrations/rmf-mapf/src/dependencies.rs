@@ -41,7 +41,7 @@ impl Dependencies {
     /// The dependencies of trajectories that are free of collisions at their times.
     ///
     /// An agent that has been at waypoint k heads for waypoint k + 1, along the line or the turn between them and at any speed, only if
-    /// [`Dependencies::may_proceed`]. Then no two agents ever touch, and none waits for ever. A dependency that another one of the
+    /// [`Dependencies::may_proceed`]. Then no two agents ever touch, but for a nanometre of rounding, and none waits for ever. A dependency that another one of the
     /// same two agents implies is left out.
     ///
     /// Cost: for each pair of agents that of a table of two agents, and, if they have regions, of a movement authority for each waypoint.
