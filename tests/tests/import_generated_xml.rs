@@ -60,12 +60,14 @@ impl Element {
     }
 }
 
+/// What an importer makes of a file, with its warnings, or why it refuses it.
+type Imported = Result<(Meaning, Vec<String>), String>;
+
 /// A format of files, and both of its readers.
 pub(crate) struct Format {
     /// What a file means; `None` if it does not say what it has to.
     pub(crate) meaning: fn(&Element) -> Option<Meaning>,
-    /// What the importer makes of it, with its warnings.
-    pub(crate) imported: fn(&Element) -> Result<(Meaning, Vec<String>), String>,
+    pub(crate) imported: fn(&Element) -> Imported,
 }
 
 #[derive(Default)]
