@@ -20,8 +20,7 @@ pub type Table = Traffic<Number, AGENTS, REGIONS, PIECES, ORDERS>;
 /// The supervisor behind the line.
 pub type Supervisor = Session<Number, AGENTS, ROOM, REGIONS, PIECES, Table>;
 
-static SUPERVISOR: ConstStaticCell<Supervisor> =
-    ConstStaticCell::new(Session::of(Service::with(Traffic::new(), &[])));
+static SUPERVISOR: ConstStaticCell<Supervisor> = ConstStaticCell::new(Session::of(Service::with(Traffic::new(), &[])));
 
 /// The watchdog's time \[ms\]: more than any board here takes from one feeding to the next (`docs/guide/firmware.md`, "The watchdog").
 pub const WATCHDOG_MS: u32 = 500;
