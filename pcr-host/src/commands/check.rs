@@ -35,7 +35,7 @@ Examples:
   pcr check plan.json                       who collides when, where, how deep
   pcr check plan.json --closest --certify   how near they come, and a proof
   pcr check -q plan.json && echo free       for scripts: by the exit status
-  pcr check run.mcap --radius 0.4 --top-speed 2 -o run.html   what ran, and a page
+  pcr check run.mcap --radius 0.4 --top-speed 2 -o run.html   what ran, drawn
   pcr check - --format json < plans.jsonl   JSON Lines: a scenario on each line";
 
 /// Tell whether the agents collide, moving as the scenario says
