@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """What the workspaces depend on, from `cargo metadata`:
 
-  dependencies.py             the Rust that they need, and what a manifest has to tell; fails where something is wrong
+  dependencies.py [FOLDER...]  the Rust that they need, and what a manifest has to tell; fails where something is wrong (without folders: of those below)
   dependencies.py sbom CRATE  the bill of materials of a crate, CycloneDX 1.5, on the standard output: the same bytes for the same lock file
 
 Licences and origins are looked at by cargo-deny (deny.toml), and whether each is used by cargo-shear: .ci/test.sh style."""
@@ -30,9 +30,9 @@ def oldest(found):
     return next((package["rust_version"] for package in found["packages"] if package["id"] in members and package["rust_version"]), "999")
 
 
-def check():
+def check(folders):
     wrong, crates = [], set()
-    for folder in WORKSPACES:
+    for folder in folders:
         found = metadata(folder)
         members = set(found["workspace_members"])
         for package in found["packages"]:
@@ -85,4 +85,4 @@ def sbom(name):
 
 
 if __name__ == "__main__":
-    sbom(sys.argv[2]) if sys.argv[1:2] == ["sbom"] else check()
+    sbom(sys.argv[2]) if sys.argv[1:2] == ["sbom"] else check(sys.argv[1:] or WORKSPACES)

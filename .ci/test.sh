@@ -149,6 +149,7 @@ integrations() {
     cargo clippy --workspace --all-targets --locked -- -D warnings
     cargo test --workspace --locked
   )
+  .ci/dependencies.py integrations
   deny integrations
   .ci/circles.py integrations/rmf-mapf/src
   .ci/names.py integrations/rmf-mapf/src

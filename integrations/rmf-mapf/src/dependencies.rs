@@ -94,10 +94,9 @@ impl Dependencies {
     /// What an agent has to wait for before it heads for the waypoint of an index.
     ///
     /// # Errors
-    /// [`Error::Agents`], [`Error::NoSuchWaypoint`].
+    /// [`Error::NoSuchAgent`], [`Error::NoSuchWaypoint`].
     pub fn before(&self, agent: usize, waypoint: usize) -> Result<impl Iterator<Item = Dependency>, Error> {
-        let known =
-            *self.waypoints.get(agent).ok_or(Error::Agents { given: agent + 1, expected: self.waypoints.len() })?;
+        let known = *self.waypoints.get(agent).ok_or(Error::NoSuchAgent { agent })?;
         if waypoint >= known {
             return Err(Error::NoSuchWaypoint { agent, waypoint });
         }
@@ -114,11 +113,14 @@ impl Dependencies {
     /// reached. At its last waypoint an agent does not proceed.
     ///
     /// # Errors
-    /// [`Error::Agents`], [`Error::NoSuchWaypoint`].
+    /// [`Error::Agents`], [`Error::NoSuchAgent`], [`Error::NoSuchWaypoint`].
     pub fn may_proceed(&self, agent: usize, reached: &[usize]) -> Result<bool, Error> {
         let expected = self.waypoints.len();
-        if reached.len() != expected || agent >= expected {
+        if reached.len() != expected {
             return Err(Error::Agents { given: reached.len(), expected });
+        }
+        if agent >= expected {
+            return Err(Error::NoSuchAgent { agent });
         }
         if let Some(agent) = (0..expected).find(|&agent| reached[agent] >= self.waypoints[agent]) {
             return Err(Error::NoSuchWaypoint { agent, waypoint: reached[agent] });

@@ -31,6 +31,13 @@ pub enum Error {
         /// The waypoint.
         waypoint: usize,
     },
+    /// On the way to a waypoint an outline turns by half a turn, and the waypoints do not say to which side: one in between does.
+    HalfTurn {
+        /// The agent.
+        agent: usize,
+        /// The waypoint.
+        waypoint: usize,
+    },
     /// A number is not finite, or out of range.
     Invalid {
         /// The agent.
@@ -58,6 +65,11 @@ pub enum Error {
         /// How many are expected.
         expected: usize,
     },
+    /// There is no agent of this index.
+    NoSuchAgent {
+        /// The index.
+        agent: usize,
+    },
     /// A trajectory has no waypoint of this index.
     NoSuchWaypoint {
         /// The agent.
@@ -78,6 +90,12 @@ impl fmt::Display for Error {
             Self::TurnsOnTheWay { agent, waypoint } => {
                 write!(f, "agent {agent}: it moves and turns at the same time on the way to waypoint {waypoint}")
             }
+            Self::HalfTurn { agent, waypoint } => {
+                write!(
+                    f,
+                    "agent {agent}: it is not said to which side it makes half a turn on the way to waypoint {waypoint}"
+                )
+            }
             Self::Invalid { agent, problem } => write!(f, "agent {agent}: {problem}"),
             Self::Meeting { agents: [a, b] } => write!(f, "agents {a} and {b} collide at the times of the plan"),
             Self::Circle { waits } => {
@@ -89,6 +107,7 @@ impl fmt::Display for Error {
             }
             Self::Memory(full) => full.fmt(f),
             Self::Agents { given, expected } => write!(f, "{given} agents, and the plan has {expected}"),
+            Self::NoSuchAgent { agent } => write!(f, "there is no agent {agent}"),
             Self::NoSuchWaypoint { agent, waypoint } => write!(f, "agent {agent}: there is no waypoint {waypoint}"),
         }
     }

@@ -4,18 +4,13 @@
 //! of two steps and after it, so that every waypoint is reached in time; in between an agent is off by nanometres.
 
 use crate::Error;
-use crate::trajectory::{Footprint, TimedPose, Trajectory, wrapped};
+use crate::trajectory::{Footprint, ROUNDING, TimedPose, Trajectory, is_half_turn, wrapped};
 use pcr_core::{
     InvalidInput, Motion, Outline, PathRef, Phase, Point, Pose, ProfileRef, Radians, Segment, TurnSide, Vector,
 };
-use std::f64::consts::PI;
 
 /// Time in which a speed changes \[s\].
 const RAMP: f64 = 1e-9;
-
-/// Distances \[m\] and angles \[rad\] that are rounding, and nothing else: single precision some metres from the origin. The footprint is larger
-/// by what they move it.
-const ROUNDING: f64 = 1e-6;
 
 /// A path, a profile and a footprint, which a motion borrows.
 pub(crate) struct OwnedMotion {
@@ -52,7 +47,7 @@ impl OwnedMotion {
             Footprint::Polygon { corners } => {
                 let reach = corners.iter().map(|[x, y]| x.hypot(*y)).fold(0.0, f64::max);
                 let corners = corners.iter().map(|&[x, y]| Vector { x, y });
-                // Twice: by its place and by its heading.
+                // By its place and by its heading.
                 let rounding = ROUNDING * (1.0 + reach);
                 (Some(Outline::polygon(corners, rounding).map_err(invalid)?), Some(reach))
             }
@@ -69,6 +64,9 @@ impl OwnedMotion {
             let duration = to.time - from.time;
             if duration.is_nan() || duration <= 0.0 {
                 return Err(Error::Time { agent, waypoint: k + 1 });
+            }
+            if reach.is_some() && is_half_turn(from, to) {
+                return Err(Error::HalfTurn { agent, waypoint: k + 1 });
             }
             match step(path.end(), from, to, reach.is_some()) {
                 None => return Err(Error::TurnsOnTheWay { agent, waypoint: k + 1 }),
@@ -157,10 +155,10 @@ impl PathBuilder {
         self.push(direction, |last| last.then_line(length))
     }
 
-    /// Turns the body by an angle, at most half a turn.
+    /// Turns the body by an angle, less than half a turn.
     fn pivot(&mut self, lever: f64, by: f64) -> Result<(), InvalidInput> {
         let turn = if by > 0.0 { TurnSide::Left } else { TurnSide::Right };
-        self.push(self.direction, |last| last.then_pivot(lever, turn, lever * by.abs().min(PI)))?;
+        self.push(self.direction, |last| last.then_pivot(lever, turn, lever * by.abs()))?;
         self.direction += by;
         self.heading += by;
         Ok(())

@@ -50,22 +50,26 @@ impl Trajectory {
         Self::new(poses.into_iter().enumerate().map(pose))
     }
 
-    /// The same with a footprint.
+    /// Returns the trajectory with this footprint.
     #[must_use]
     pub fn with_footprint(self, footprint: Footprint) -> Self {
         Self { footprint: Some(footprint), ..self }
     }
 
-    /// The same with waypoints in between, so that none is later than the one before by more than `longest` \[s\]. Waypoints get new
-    /// indices; the second list has the new index of each old one. A time that is not positive changes nothing.
+    /// Adds waypoints in between, so that none is later than the one before by more than `longest` \[s\]. Waypoints get new indices; the
+    /// second list has the new index of each old one. Nothing is added for a time that is not positive, nor on the way to a waypoint at which the
+    /// agent has made half a turn: it is not said to which side.
     #[must_use]
     pub fn divided(&self, longest: f64) -> (Self, Vec<usize>) {
         let mut poses: Vec<TimedPose> = self.poses.first().copied().into_iter().collect();
         let mut indices = vec![0; poses.len()];
+        // The heading of a disc makes no difference.
+        let is_turning = !matches!(self.footprint, Some(Footprint::Disc { .. }));
         for pair in self.poses.windows(2) {
             let [from, to] = [pair[0], pair[1]];
             let parts = ((to.time - from.time) / longest).ceil();
-            let parts = if parts.is_finite() && parts >= 1.0 { parts as u32 } else { 1 };
+            let is_divided = parts.is_finite() && parts >= 1.0 && !(is_turning && is_half_turn(from, to));
+            let parts = if is_divided { parts as u32 } else { 1 };
             let turn = wrapped(to.yaw - from.yaw);
             for k in 1..parts {
                 let share = f64::from(k) / f64::from(parts);
@@ -86,6 +90,15 @@ impl Trajectory {
     pub fn poses(&self) -> &[TimedPose] {
         &self.poses
     }
+}
+
+/// Distances \[m\] and angles \[rad\] that are rounding, and nothing else: single precision some metres from the origin. The footprint is larger
+/// by what they move it.
+pub(crate) const ROUNDING: f64 = 1e-6;
+
+/// Whether the headings of two poses are opposite.
+pub(crate) fn is_half_turn(from: TimedPose, to: TimedPose) -> bool {
+    std::f64::consts::PI - wrapped(to.yaw - from.yaw).abs() <= ROUNDING
 }
 
 /// An angle within half a turn of 0 \[rad\].

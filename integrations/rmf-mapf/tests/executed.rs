@@ -255,6 +255,11 @@ fn what_cannot_be_answered_is_refused() {
     let square = [[1.0, -1.0], [1.0, 1.0], [-1.0, 1.0], [-1.0, -1.0]];
     let curved = Trajectory::new([pose(0.0, 0.0, 0.0), pose(1.0, 1.0, 0.2)]).with_footprint(polygon(&square));
     assert_eq!(error(curved), Error::TurnsOnTheWay { agent: 1, waypoint: 1 });
+    let turned = Trajectory::new([pose(0.0, 0.0, 0.0), pose(1.0, 0.0, PI)]).with_footprint(polygon(&square));
+    assert_eq!(error(turned.clone()), Error::HalfTurn { agent: 1, waypoint: 1 });
+    assert_eq!(error(turned.divided(0.1).0), Error::HalfTurn { agent: 1, waypoint: 1 });
+    let by_way_of = Trajectory::new([pose(0.0, 0.0, 0.0), pose(1.0, 0.0, -1.0), pose(2.0, 0.0, PI)]);
+    assert!(Dependencies::of(&[by_way_of.with_footprint(polygon(&square))]).is_ok());
     let concave = [[1.0, -1.0], [0.0, 0.0], [1.0, 1.0], [-1.0, 0.0]];
     let stands = Trajectory::new([pose(0.0, 0.0, 0.0)]).with_footprint(polygon(&concave));
     assert!(matches!(error(stands), Error::Invalid { agent: 1, .. }));
@@ -262,6 +267,7 @@ fn what_cannot_be_answered_is_refused() {
 
     let dependencies = Dependencies::of(&[good.clone(), disc(0.3, &[(0.0, 5.0, 5.0)])]).unwrap();
     assert_eq!(dependencies.may_proceed(0, &[0]).unwrap_err(), Error::Agents { given: 1, expected: 2 });
+    assert_eq!(dependencies.may_proceed(2, &[0, 0]).unwrap_err(), Error::NoSuchAgent { agent: 2 });
     assert_eq!(dependencies.may_proceed(0, &[2, 0]).unwrap_err(), Error::NoSuchWaypoint { agent: 0, waypoint: 2 });
     assert!(!dependencies.may_proceed(0, &[1, 0]).unwrap() && dependencies.may_proceed(0, &[0, 0]).unwrap());
     assert_eq!(Dependencies::of(&[]).unwrap().iter().count(), 0);
