@@ -112,6 +112,39 @@ fn vehicles_of_every_edition_are_told_in_its_name() {
     }
 }
 
+/// An update replaces the horizon by a way of the same length, on which there is a limit.
+#[test]
+fn a_horizon_of_the_same_length_has_limits_of_its_own() {
+    let mut own = Puppet::of(ProtocolVersion::V2_1, at_broker());
+    let gate = ClosedArea { start: StartPose { x: 40.0, y: 20.0, heading: 0.0 }, ..slow("gate", 0.0, 0.5) };
+    own.supervisor.close(gate).unwrap();
+    let node = |name: &str, sequence: u64, [x, y]: [f64; 2], released: bool| {
+        json!({ "nodeId": name, "sequenceId": sequence, "released": released, "actions": [],
+            "nodePosition": { "x": x, "y": y, "mapId": "map" } })
+    };
+    let edge = |name: &str, sequence: u64, [from, to]: [&str; 2], released: bool| {
+        json!({ "edgeId": name, "sequenceId": sequence, "released": released, "actions": [],
+            "startNodeId": from, "endNodeId": to })
+    };
+    let ahead = node("n2", 2, [40.0, 0.0], true);
+    own.manager(
+        TopicKind::Order,
+        json!({ "orderId": "a", "orderUpdateId": 0,
+            "nodes": [node("n0", 0, [0.0, 0.0], true), ahead, node("n4", 4, [80.0, 0.0], false)],
+            "edges": [edge("e0", 1, ["n0", "n2"], true), edge("e1", 3, ["n2", "n4"], false)] }),
+    );
+    own.lasts(1.0);
+    assert_eq!(speed_of(&own, "e1"), None);
+    own.is_at("a", 0, 0, &[2], 0.0, true);
+    own.manager(
+        TopicKind::Order,
+        json!({ "orderId": "a", "orderUpdateId": 1, "nodes": [ahead, node("left", 4, [40.0, 40.0], false)],
+            "edges": [edge("e2", 3, ["n2", "left"], false)] }),
+    );
+    own.lasts(2.0);
+    assert_eq!(speed_of(&own, "e2"), Some(0.5), "{:?}", speeds(&own));
+}
+
 /// It brakes before the edge, and speeds up behind it.
 #[test]
 fn simulated_vehicles_keep_to_the_speed_of_an_edge() {

@@ -88,8 +88,8 @@ pub struct ActiveOrder {
     pub refused: Option<f64>,
     /// Where the speed is limited on the whole way.
     pub(crate) limits: Vec<SpeedLimit>,
-    /// The revision of the closures and the way of which these are.
-    pub(crate) limits_at: Option<(u64, u64)>,
+    /// The revision of the closures, the manager's update and the length of the way of which these are.
+    pub(crate) limits_at: Option<(u64, u64, u64)>,
 }
 
 /// The part of the manager's order that is stored as a note.

@@ -40,7 +40,8 @@ impl ActiveOrder {
         if !supervisor.limits_speed() && self.limits.is_empty() {
             return false;
         }
-        let key = (supervisor.closure_revision(), self.path.length().to_bits());
+        // An update may replace the horizon by another one of the same length, and what is passed may be left out.
+        let key = (supervisor.closure_revision(), self.order.update_id, self.path.length().to_bits());
         if self.limits_at == Some(key) {
             return false;
         }
