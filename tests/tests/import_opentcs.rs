@@ -509,3 +509,24 @@ fn paths_that_are_elsewhere_in_a_model_are_refused() {
         warnings.lines()
     );
 }
+
+/// A closure of the block would leave them open.
+#[test]
+fn members_of_blocks_that_are_not_there_are_told() {
+    let mut warnings = Warnings::default();
+    let text = plant(
+        "<location name=\"L\"/><block name=\"b\"><member name=\"A\"/><member name=\"L\"/><member name=\"A-X\"/><membr name=\"B\"/></block>",
+    );
+    let read = layout(InputFormat::OpenTcs, &text, &options(&[]), &mut warnings).unwrap().layout;
+    let lines = warnings.lines();
+    let told: Vec<&String> = lines.iter().filter(|line| line.contains("block")).collect();
+    assert_eq!(
+        told,
+        [
+            "membr: not known in block, and not read",
+            "block b: its member A-X is not there; a closure of the block does not close it"
+        ]
+    );
+    let named: Vec<String> = read.zones[0].nodes.iter().map(|&node| read.nodes[node].id.to_string()).collect();
+    assert_eq!((read.zones.len(), named, read.zones[0].edges.len()), (1, vec!["A".to_owned()], 0));
+}

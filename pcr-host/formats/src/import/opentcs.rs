@@ -17,7 +17,7 @@ use crate::footprint::Footprint;
 use crate::plane_geometry::distance;
 use crate::scenario::PlacedSegment;
 use drawn::{Bend, VisualProperties};
-use std::collections::HashMap;
+use std::collections::{HashMap, HashSet};
 use std::f64::consts::FRAC_PI_2;
 
 pub(super) use vehicles::vehicles;
@@ -35,13 +35,18 @@ const OF_PATH: [&str; 4] = ["peripheralOperation", "vehicleEnvelope", "property"
 /// The same of a vehicle.
 const OF_VEHICLE: [&str; 3] = ["boundingBox", "property", "vehicleLayout"];
 
+/// The same of a block.
+const OF_BLOCK: [&str; 3] = ["member", "property", "blockLayout"];
+
 /// The same of the visual layout, and of what it says of a point or path.
 const OF_VISUAL_LAYOUT: [&str; 7] =
     ["modelLayoutElement", "property", "layer", "layerGroup", "color", "shapeLayoutElement", "viewBookmark"];
 
 /// Attributes of all versions, of the elements of which something is read.
-const ATTRIBUTES: [(&str, &[&str]); 10] = [
+const ATTRIBUTES: [(&str, &[&str]); 12] = [
     ("model", &["name", "version"]),
+    ("block", &["id", "name", "type"]),
+    ("member", &["id", "name"]),
     (
         "point",
         &[
@@ -229,23 +234,32 @@ pub(super) fn read(
         edges,
         ..Layout::default()
     };
-    read_blocks(root, &mut layout);
+    read_blocks(root, &mut layout, warnings);
     Ok(layout)
 }
 
-/// Adds the blocks as zones. A member that is neither a point nor a path, such as a location, is no place of a vehicle.
-fn read_blocks(root: roxmltree::Node<'_, '_>, layout: &mut Layout) {
+/// Adds the blocks as zones. A location is no place of a vehicle; any other member that is not there is told, because a closure of the block
+/// does not close it.
+fn read_blocks(root: roxmltree::Node<'_, '_>, layout: &mut Layout, warnings: &mut Warnings) {
     let places = |ids: Vec<String>| -> HashMap<String, usize> {
         ids.into_iter().enumerate().map(|(place, id)| (id, place)).collect()
     };
     let points = places(layout.nodes.iter().map(|node| node.id.to_string()).collect());
     let paths = places(layout.edges.iter().map(|edge| edge.id.to_string()).collect());
+    let locations: HashSet<&str> =
+        children(root, "location").filter_map(|location| location.attribute("name")).collect();
     for block in children(root, "block") {
+        warn_of_unknown(block, &OF_BLOCK, warnings);
         let Some(name) = block.attribute("name").filter(|name| !name.is_empty()) else { continue };
         let zone = layout.zone_called(name);
-        for member in children(block, "member").filter_map(|member| member.attribute("name")) {
+        for member in children(block, "member") {
+            let member = member.attribute("name").unwrap_or_default();
             zone.edges.extend(paths.get(member));
             zone.nodes.extend(points.get(member));
+            if !paths.contains_key(member) && !points.contains_key(member) && !locations.contains(member) {
+                let problem = format!("its member {member} is not there; a closure of the block does not close it");
+                warnings.add(WarningCode::NotInGraph, format_args!("block {name}"), problem);
+            }
         }
     }
 }
