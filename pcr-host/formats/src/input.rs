@@ -111,7 +111,7 @@ fn text(file: &Path) -> Result<(Option<PathBuf>, String), InputError> {
     }
 }
 
-/// First bytes of bags that are no text, and what to do with them.
+/// First bytes of bags, which are no text, and what to do with them.
 const BAGS: [(&[u8], &str); 3] = [
     (b"\x89MCAP0\r\n", "a bag of ROS 2 (MCAP); only pcr check FILE reads it"),
     (
@@ -270,31 +270,35 @@ pub fn holds_poses(file: &Path, options: &ImportOptions) -> bool {
     }
 }
 
+/// The first bytes of a file, at most so many; none of standard input, which is not read for that.
+fn head(file: &Path, most: usize) -> Vec<u8> {
+    let mut head = Vec::new();
+    if fs::metadata(file).is_ok_and(|there| there.is_file())
+        && let Ok(opened) = fs::File::open(file)
+        && opened.take(most as u64).read_to_end(&mut head).is_err()
+    {
+        head.clear();
+    }
+    head
+}
+
 /// Whether a file is a bag of ROS 2 (MCAP). Standard input is not read for that.
 #[cfg(feature = "bags")]
 pub fn is_bag(file: &Path) -> bool {
-    let mut head = Vec::new();
-    let is_file = fs::metadata(file).is_ok_and(|there| there.is_file());
-    is_file
-        && fs::File::open(file).is_ok_and(|opened| opened.take(import::BAG.len() as u64).read_to_end(&mut head).is_ok())
-        && head == import::BAG
+    head(file, import::BAG.len()) == import::BAG
 }
 
-/// Refuses a bag that nothing reads, with what to do. Standard input is not read for that.
+/// Refuses a bag that is not read here, with what to do. Standard input is not read for that.
 ///
 /// # Errors
 /// [`InputError::Bag`].
 pub fn refuse_bag(file: &Path) -> Result<(), InputError> {
     let longest = BAGS.iter().map(|(magic, _)| magic.len()).max().unwrap_or_default();
-    let mut head = Vec::new();
-    if fs::metadata(file).is_ok_and(|there| there.is_file())
-        && let Ok(opened) = fs::File::open(file)
-        && opened.take(longest as u64).read_to_end(&mut head).is_ok()
-        && let Some((_, what)) = BAGS.iter().find(|(magic, _)| head.starts_with(magic))
-    {
-        return Err(InputError::Bag(named(file), what));
+    let head = head(file, longest);
+    match BAGS.iter().find(|(magic, _)| head.starts_with(magic)) {
+        Some((_, what)) => Err(InputError::Bag(named(file), what)),
+        None => Ok(()),
     }
-    Ok(())
 }
 
 /// Reads the poses in a bag of ROS 2, and warnings about them.

@@ -40,7 +40,7 @@ const ADDED: [&str; 2] = ["userData", "dataQuality"];
 /// What is read of a file, or known to have no reference line.
 const KNOWN: [&str; 8] = ["header", "road", "controller", "junction", "junctionGroup", "station", ADDED[0], ADDED[1]];
 
-/// The same of a road, of its link and of a part of it that has a type.
+/// Elements that are known in a road.
 const OF_ROAD: [&str; 13] = [
     "link",
     "type",
@@ -56,7 +56,9 @@ const OF_ROAD: [&str; 13] = [
     ADDED[0],
     ADDED[1],
 ];
+/// Those of its link.
 const OF_LINK: [&str; 5] = ["predecessor", "successor", "neighbor", ADDED[0], ADDED[1]];
+/// Those of a part of the road with a type and a speed.
 const OF_TYPE: [&str; 3] = ["speed", ADDED[0], ADDED[1]];
 
 /// Largest radius of an arc \[m\]; beyond it a line stands for it, and how far it leaves that counts as deviation.
@@ -74,13 +76,13 @@ fn windings(shape: &PathSegment) -> f64 {
 
 const ROAD: Keys = Keys::new(&["id", "length"], &["name", "junction", "rule"]);
 const SPEED: Keys = Keys::new(&["max", "unit"], &[]);
-/// Of a part of a road that has a type.
+/// A part of a road with a type and a speed.
 const TYPE: Keys = Keys::new(&["s", "type"], &["country"]).not(&["max", "unit"]);
 const GEOMETRY: Keys = Keys::new(&["s", "x", "y", "hdg", "length"], &[]);
-/// Of the end of a road: the road or junction that follows there.
+/// The road or junction that follows at an end of a road.
 const LINKED: Keys = Keys::new(&["elementType", "elementId", "contactPoint"], &["elementS", "elementDir"]);
 
-/// The attributes of the shapes that are read.
+/// The attributes of a shape; `None` for one that is not read.
 fn shape_keys(shape: &str) -> Option<Keys> {
     Some(match shape {
         "line" => Keys::new(&[], &[]),
@@ -302,8 +304,10 @@ fn curve(
         }
         let element = element.ok_or_else(|| ImportError::new(format!("{name}: it has no shape")))?;
         let shape = element.tag_name().name();
-        let keys = shape_keys(shape).ok_or_else(|| ImportError::new(format!("{name}: {shape} is not read")))?;
-        keys.check_attributes(element, &format!("{name}, {shape}"), warnings)?;
+        // One that is not read is refused below.
+        if let Some(keys) = shape_keys(shape) {
+            keys.check_attributes(element, &format!("{name}, {shape}"), warnings)?;
+        }
         if !(0.0..=LIMIT).contains(&length) || heading.abs() > 1e6 {
             return Err(ImportError::new(format!("{name}: its length, heading or sweep is out of range")));
         }
@@ -461,7 +465,8 @@ fn groups(
         warn_of_unknown(*link, &OF_LINK, warnings);
         for (side, name) in ["predecessor", "successor"].into_iter().enumerate() {
             let Some(linked) = child(*link, name) else { continue };
-            let other = LINKED.check_attributes(linked, "link", warnings).map_err(LinkError::Attribute);
+            let end = format!("road {}, {name}", roads.list()[place].id);
+            let other = LINKED.check_attributes(linked, &end, warnings).map_err(LinkError::Attribute);
             let other = match (other, linked.attribute("elementType")) {
                 (Err(error), _) => Err(error),
                 // Junctions are roads that are linked to the roads that they join.
