@@ -4,7 +4,7 @@
 use crate::palette::colour;
 use crate::template::PageTemplate;
 use pcr_formats::import::{BetweenPoses, PoseLog, PoseTrack};
-use pcr_planning::approaches::{ApproachReport, ContactVerdict, NearnessProfiles};
+use pcr_planning::approaches::{ApproachEntry, ApproachReport, ContactVerdict, NearnessProfiles};
 use serde_json::{Value, json};
 use std::collections::BTreeSet;
 
@@ -16,6 +16,7 @@ const PAGE: PageTemplate = PageTemplate {
     script: concat!(
         include_str!("crowd.js"),
         include_str!("outward.js"),
+        include_str!("canvas.js"),
         include_str!("record/record.js"),
         include_str!("record/nearness.js"),
         include_str!("scale.js")
@@ -30,7 +31,7 @@ const ANGLE_UNIT: f64 = 1e-4;
 /// Times of a pair that are told apart.
 const PARTS: usize = 400;
 
-/// Pairs on a page: those of which a contact is not excluded, then the nearest ones.
+/// Pairs on a page: those of which a contact is proved, then those of which it cannot be known, then the nearest ones.
 const PAIRS: usize = 100;
 
 /// Poses on a page; of a record with more, those around the nearest approaches of its pairs.
@@ -62,7 +63,9 @@ fn pairs(report: &ApproachReport, log: &PoseLog) -> (Vec<ShownPair>, usize) {
     let index = |id: u64| log.tracks.iter().position(|track| track.id == id).unwrap_or_default();
     let mut shown: Vec<ShownPair> = Vec::new();
     let mut known = BTreeSet::new();
-    for approach in &report.approaches {
+    let is_contact = |it: &&ApproachEntry| it.verdict == ContactVerdict::Contact;
+    let proved = report.approaches.iter().filter(is_contact);
+    for approach in proved.chain(report.approaches.iter().filter(|it| !is_contact(it))) {
         if known.insert((approach.i, approach.j)) {
             shown.push(ShownPair { agents: [approach.i, approach.j].map(index), around: approach.t });
         }
@@ -106,7 +109,7 @@ fn data(report: &ApproachReport, log: &PoseLog) -> Value {
         json!({
             "agents": pair.agents,
             "time": time,
-            "parts": parts.iter().map(|part| [part.t[0], part.t[1], short(part.clearance[0]), short(part.clearance[1])]).collect::<Vec<_>>(),
+            "parts": parts.iter().map(|part| [part.t[0], part.t[1], short(part.clearance[0], f64::floor), short(part.clearance[1], f64::ceil)]).collect::<Vec<_>>(),
             "approaches": approaches.collect::<Vec<_>>(),
             "closest": closest,
         })
@@ -133,9 +136,9 @@ fn data(report: &ApproachReport, log: &PoseLog) -> Value {
     })
 }
 
-/// A number with four digits after the point.
-fn short(value: f64) -> f64 {
-    (value * 1e4).round() / 1e4
+/// A bound with four digits after the point, rounded to one side.
+fn short(value: f64, rounded: fn(f64) -> f64) -> f64 {
+    rounded(value * 1e4) / 1e4
 }
 
 /// The time in which two agents are on record, or the first of them stands.

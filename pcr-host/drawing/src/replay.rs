@@ -19,7 +19,12 @@ const PAGE: PageTemplate = PageTemplate {
     connect: "",
     body: include_str!("replay/replay.html"),
     style: include_str!("replay/replay.css"),
-    script: concat!(include_str!("crowd.js"), include_str!("replay/replay.js"), include_str!("scale.js")),
+    script: concat!(
+        include_str!("crowd.js"),
+        include_str!("canvas.js"),
+        include_str!("replay/replay.js"),
+        include_str!("scale.js")
+    ),
 };
 
 /// Positions are given in this unit \[m\].

@@ -1,12 +1,4 @@
 
-/** Lines at round values. */
-function ticks(lo, hi) {
-  const raw = (hi - lo) / 6, power = 10 ** Math.floor(Math.log10(raw)), step = power * [1, 2, 5, 10].find((m) => m * power >= raw);
-  const values = [];
-  for (let k = Math.ceil(lo / step); k * step <= hi; k++) values.push(k * step);
-  return values;
-}
-
 /** What is known of the pair at a time. */
 function known(time) {
   const approach = pair.approaches.find(({ t }) => t[0] <= time && time <= t[1]);
@@ -29,22 +21,8 @@ function drawNearness() {
   const [t0, t1] = [first, Math.max(last, first + 1e-3)];
   const most = Math.max(0.5, ...pair.parts.map(([, , lower]) => lower)) * 1.05, least = Math.min(0, ...pair.parts.map(([, , lower]) => lower)) * 1.05 - 0.05;
   const x = (t) => left + (t - t0) / (t1 - t0) * (right - left), y = (d) => bottom - (d - least) / (most - least) * (bottom - top);
-  c.font = "13px sans-serif";
-  c.textBaseline = "alphabetic";
-  c.fillStyle = theme.ink;
-  c.strokeStyle = theme.grid;
-  c.lineWidth = 1;
-  c.textAlign = "center";
-  for (const t of ticks(t0, t1)) { c.beginPath(); c.moveTo(x(t), top); c.lineTo(x(t), bottom); c.stroke(); c.fillText(+t.toFixed(3), x(t), bottom + 34); }
-  c.textAlign = "right";
-  for (const d of ticks(least, most)) { c.beginPath(); c.moveTo(left, y(d)); c.lineTo(right, y(d)); c.stroke(); c.fillText(+d.toFixed(3), left - 6, y(d) + 4); }
-  c.textAlign = "center";
-  c.fillText("time [s]", (left + right) / 2, bottom + 51);
-  c.save();
-  c.translate(12, (top + bottom) / 2);
-  c.rotate(-Math.PI / 2);
-  c.fillText("clearance [m]", 0, 0);
-  c.restore();
+  // Room for the bars.
+  drawAxes(c, [left, top, right, bottom], [x, [t0, t1], "time [s]"], [y, [least, most], "clearance [m]"], 18);
   c.save();
   c.beginPath();
   c.rect(left, top, right - left, bottom - top + 18);

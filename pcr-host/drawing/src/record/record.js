@@ -12,13 +12,6 @@ function readTheme() {
   theme.agents = agents.map(({ colour }) => (dark.matches ? `color-mix(in oklab, ${colour} 68%, white)` : colour));
 }
 
-function option(select, text, value) {
-  const option = document.createElement("option");
-  option.textContent = text;
-  option.value = value;
-  select.append(option);
-}
-
 /** Seconds of a pose. */
 const at = ({ t }, k) => t[k] * timeUnit;
 const point = ({ points }, k) => [points[2 * k] * unit, points[2 * k + 1] * unit];
@@ -95,17 +88,6 @@ function view() {
   return { middle, half, map: seen[0].map };
 }
 
-/** A canvas in CSS pixels, sharp on any screen. */
-function surface(id) {
-  const canvas = $(id), ratio = window.devicePixelRatio || 1;
-  const [width, height] = [canvas.clientWidth, canvas.clientHeight];
-  if (canvas.width !== Math.round(width * ratio) || canvas.height !== Math.round(height * ratio)) { canvas.width = Math.round(width * ratio); canvas.height = Math.round(height * ratio); }
-  const context = canvas.getContext("2d");
-  context.setTransform(ratio, 0, 0, ratio, 0, 0);
-  context.clearRect(0, 0, width, height);
-  return [context, width, height];
-}
-
 /** The outline of a body, wider by some pixels all around. */
 function shape(c, agent, [x, y], heading, scale, more = 0) {
   const { body, radius } = agents[agent];
@@ -170,21 +152,6 @@ function drawWorld() {
   }
   for (const [agent, disc] of drawn.reverse()) write(c, crowd, agents[agent].name, disc, agent, inPair(agent));
   drawScale(c, width, height, scale);
-}
-
-/** A name in its disc or beside it; nothing if there is no room. */
-function write(c, crowd, text, disc, owner, over) {
-  c.font = "bold 13px sans-serif";
-  c.textAlign = "center";
-  c.textBaseline = "middle";
-  c.lineJoin = "round";
-  const at = crowd.place(disc, owner, c.measureText(text).width + 3, 13, over);
-  if (!at) return;
-  c.strokeStyle = theme.paper;
-  c.lineWidth = 3;
-  c.strokeText(text, ...at);
-  c.fillStyle = theme.ink;
-  c.fillText(text, ...at);
 }
 
 function draw() {

@@ -12,12 +12,6 @@ function readTheme() {
   theme.robots = robots.map(({ colour }) => (dark.matches ? `color-mix(in oklab, ${colour} 68%, white)` : colour));
 }
 
-function option(select, text, value) {
-  const option = document.createElement("option");
-  option.textContent = text;
-  option.value = value;
-  select.append(option);
-}
 data.runs.forEach((run, k) => option($("run"), run.controller, k));
 robots.forEach((robot, k) => option($("ego"), robot.name, k));
 
@@ -56,17 +50,6 @@ function choose() {
   now = Math.min(now, frames);
   // The room is for the robots where there is no map.
   $("map").parentElement.hidden = !run?.plans.length;
-}
-
-/** A canvas in CSS pixels, sharp on any screen. */
-function surface(id) {
-  const canvas = $(id), ratio = window.devicePixelRatio || 1;
-  const [width, height] = [canvas.clientWidth, canvas.clientHeight];
-  if (canvas.width !== Math.round(width * ratio) || canvas.height !== Math.round(height * ratio)) { canvas.width = Math.round(width * ratio); canvas.height = Math.round(height * ratio); }
-  const context = canvas.getContext("2d");
-  context.setTransform(ratio, 0, 0, ratio, 0, 0);
-  context.clearRect(0, 0, width, height);
-  return [context, width, height];
 }
 
 /** Between two frames a robot moves uniformly. */
@@ -158,29 +141,6 @@ function drawWorld() {
   drawScale(c, width, height, scale);
 }
 
-/** The number of a robot in its disc or beside it, above lines of whatever colour; nothing if there is no room. */
-function write(c, crowd, text, disc, owner, over) {
-  c.font = "bold 13px sans-serif";
-  c.textAlign = "center";
-  c.textBaseline = "middle";
-  c.lineJoin = "round";
-  const at = crowd.place(disc, owner, c.measureText(text).width + 3, 13, over);
-  if (!at) return;
-  c.strokeStyle = theme.paper;
-  c.lineWidth = 3;
-  c.strokeText(text, ...at);
-  c.fillStyle = theme.ink;
-  c.fillText(text, ...at);
-}
-
-/** Lines at round values. */
-function ticks(lo, hi) {
-  const raw = (hi - lo) / 6, power = 10 ** Math.floor(Math.log10(raw)), step = power * [1, 2, 5, 10].find((m) => m * power >= raw);
-  const values = [];
-  for (let k = Math.ceil(lo / step); k * step <= hi; k++) values.push(k * step);
-  return values;
-}
-
 function drawMap() {
   if (!run.plans.length) return;
   const ego = Number($("ego").value), time = now * frame;
@@ -196,21 +156,7 @@ function drawMap() {
   const [t0, t1] = [plan.time, Math.max(plan.end, plan.time + 1)];
   const pad = 0.03 * (map.to - map.from), [l0, l1] = [map.from - pad, map.to + pad];
   const x = (t) => left + (t - t0) / (t1 - t0) * (right - left), y = (l) => bottom - (l - l0) / (l1 - l0) * (bottom - top);
-  c.font = "13px sans-serif";
-  c.fillStyle = theme.ink;
-  c.strokeStyle = theme.grid;
-  c.lineWidth = 1;
-  c.textAlign = "center";
-  for (const t of ticks(t0, t1)) { c.beginPath(); c.moveTo(x(t), top); c.lineTo(x(t), bottom); c.stroke(); c.fillText(+t.toFixed(3), x(t), bottom + 16); }
-  c.textAlign = "right";
-  for (const l of ticks(l0, l1)) { c.beginPath(); c.moveTo(left, y(l)); c.lineTo(right, y(l)); c.stroke(); c.fillText(+l.toFixed(3), left - 6, y(l) + 4); }
-  c.textAlign = "center";
-  c.fillText("time [s]", (left + right) / 2, bottom + 33);
-  c.save();
-  c.translate(12, (top + bottom) / 2);
-  c.rotate(-Math.PI / 2);
-  c.fillText("length along the path [m]", 0, 0);
-  c.restore();
+  drawAxes(c, [left, top, right, bottom], [x, [t0, t1], "time [s]"], [y, [l0, l1], "length along the path [m]"]);
   c.save();
   c.beginPath();
   c.rect(left, top, right - left, bottom - top);
