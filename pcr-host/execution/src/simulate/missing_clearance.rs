@@ -7,15 +7,15 @@ use super::replan::{Blocker, ClearanceEntry, ReplanProblem, RobotState};
 use super::robot_estimate::RobotEstimate;
 use pcr_planning::fleet::ConvexBody;
 
-/// The room beside what is in the way of a robot; `None` if that is in the way also where nobody is off the path. `robots` are their states for
-/// the missions that wait; `drift` is how far each may be off its path \[m\].
+/// Returns the room between the way of a robot that has not set off and what stands beside it; `None` if that is in the way also where nobody is
+/// off the path. `problem` has the missions that wait, with the bodies that plans use, and `drift` is the drift of the run \[m\].
 pub(super) fn missing_clearance(
     agents: &[RobotEstimate],
     problem: &ReplanProblem<'_>,
     (robot, by): (usize, Blocker),
     drift: f64,
 ) -> Option<ClearanceEntry> {
-    /// Number of bisections.
+    /// Number of bisections: from decimetres down to less than a nanometre.
     const STEPS: usize = 30;
     let off = |place: usize| agents.get(place).map_or(0.0, |agent| agent.off);
     let (needed, drifting) = match by {

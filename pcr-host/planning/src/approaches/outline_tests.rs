@@ -1,5 +1,6 @@
 //! Records of vehicles with outlines.
 
+use super::tests::report;
 use super::*;
 use crate::outline_judge::{FORK, Outline, Point, TRUCK};
 use pcr_formats::footprint::Footprint;
@@ -16,20 +17,6 @@ const SEEN: usize = 5;
 fn track(id: u64, outline: &[Point], poses: Vec<TimedPose>) -> PoseTrack {
     let footprint = Footprint::new(outline.to_vec()).unwrap();
     PoseTrack { id, radius: footprint.circumscribed_radius(), footprint: Some(footprint), poses }
-}
-
-fn report(tracks: Vec<PoseTrack>, between: BetweenPoses) -> ApproachReport {
-    let maps = vec![String::new()];
-    let log = PoseLog {
-        labels: Labels::default(),
-        origin: None,
-        maps,
-        tracks,
-        held: Vec::new(),
-        stands_at_ends: false,
-        between,
-    };
-    ApproachReport::compute("", &log, true, Vec::new(), &|_, _| {}).unwrap()
 }
 
 fn random_way(random: &mut SplitMix64) -> Vec<TimedPose> {

@@ -17,7 +17,7 @@ fn track(id: u64, radius: f64, poses: &[(f64, [f64; 2])]) -> PoseTrack {
     PoseTrack { id, radius, footprint: None, poses: poses.iter().enumerate().map(pose).collect() }
 }
 
-fn report(tracks: Vec<PoseTrack>, between: BetweenPoses) -> ApproachReport {
+pub(super) fn report(tracks: Vec<PoseTrack>, between: BetweenPoses) -> ApproachReport {
     let maps = vec![String::new()];
     let log = PoseLog {
         labels: Labels::default(),

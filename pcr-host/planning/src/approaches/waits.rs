@@ -25,11 +25,12 @@ pub struct PassingEntry {
 
 /// The waits of a record.
 pub(super) fn of(log: &PoseLog, profiles: &NearnessProfiles) -> Vec<HeldEntry> {
-    log.held.iter().map(|held| wait(held, log, profiles)).collect()
+    log.held.iter().filter_map(|held| wait(held, log, profiles)).collect()
 }
 
-fn wait(held: &HeldTime, log: &PoseLog, profiles: &NearnessProfiles) -> HeldEntry {
-    let own = log.tracks.iter().position(|track| track.id == held.id).unwrap_or_default();
+/// Every agent that was held has a track.
+fn wait(held: &HeldTime, log: &PoseLog, profiles: &NearnessProfiles) -> Option<HeldEntry> {
+    let own = log.tracks.iter().position(|track| track.id == held.id)?;
     let passing = |(other, track): (usize, &PoseTrack)| {
         let way = way(track, held.t);
         let nearness = profiles.of_pair([own, other], held.t, 1);
@@ -39,7 +40,7 @@ fn wait(held: &HeldTime, log: &PoseLog, profiles: &NearnessProfiles) -> HeldEntr
     let mut passed: Vec<PassingEntry> = log.tracks.iter().enumerate().filter_map(passing).collect();
     passed.sort_by(|a, b| a.clearance[0].total_cmp(&b.clearance[0]));
     passed.truncate(MOST);
-    HeldEntry { id: held.id, t: held.t, passed }
+    Some(HeldEntry { id: held.id, t: held.t, passed })
 }
 
 /// How far an agent went from its first to its last pose in a time \[m\].
