@@ -515,7 +515,7 @@ fn paths_that_are_elsewhere_in_a_model_are_refused() {
 fn members_of_blocks_that_are_not_there_are_told() {
     let mut warnings = Warnings::default();
     let text = plant(
-        "<location name=\"L\"/><block name=\"b\"><member name=\"A\"/><member name=\"L\"/><member name=\"A-X\"/><membr name=\"B\"/></block>",
+        "<location name=\"L\"/><block name=\"b\"><member name=\"A->\"/><member name=\"L\"/><member name=\"A-X\"/><membr name=\"B\"/></block>",
     );
     let read = layout(InputFormat::OpenTcs, &text, &options(&[]), &mut warnings).unwrap().layout;
     let lines = warnings.lines();
@@ -528,5 +528,5 @@ fn members_of_blocks_that_are_not_there_are_told() {
         ]
     );
     let named: Vec<String> = read.zones[0].nodes.iter().map(|&node| read.nodes[node].id.to_string()).collect();
-    assert_eq!((read.zones.len(), named, read.zones[0].edges.len()), (1, vec!["A".to_owned()], 0));
+    assert_eq!((read.zones.len(), named, read.zones[0].edges.len()), (1, vec!["A->".to_owned()], 0));
 }
