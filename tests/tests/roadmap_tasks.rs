@@ -1,5 +1,6 @@
 //! Tasks of others on roadmaps: all are done without a contact, however late robots are, and at least as many a second as published.
 
+use pcr_execution::ExecutionError;
 use pcr_execution::lifelong::{
     CoordinationMethod, DelayModel, LifelongOptions, MeasuredLifelongRun, TaskStream, run_tasks,
 };
@@ -97,7 +98,10 @@ fn places_that_are_none_are_refused() {
     };
     let wrong = |tasks: TaskStream| run_tasks(&imported, request, &tasks).expect_err("a wrong place");
     let node = wrong(TaskStream { starts: vec![0, 50], ..tasks.clone() });
-    assert_eq!(node, "node 50 is none of the 50 of the layout");
-    assert!(wrong(TaskStream { tasks: vec![(51, 0.0)], ..tasks.clone() }).contains("node 51"));
-    assert_eq!(wrong(TaskStream { starts: vec![3, 3], ..tasks }), "robots 0 and 1 touch where they begin");
+    assert_eq!(node.to_string(), "node 50 is none of the 50 of the layout");
+    assert!(wrong(TaskStream { tasks: vec![(51, 0.0)], ..tasks.clone() }).to_string().contains("node 51"));
+    assert_eq!(
+        wrong(TaskStream { starts: vec![3, 3], ..tasks }),
+        ExecutionError::Touching(["0".to_owned(), "1".to_owned()])
+    );
 }

@@ -8,8 +8,11 @@
 //! report      their results as JSON, CSV and tables
 //! ```
 
+mod error;
 pub mod lifelong;
 pub mod missions;
 pub mod report;
 pub mod simulate;
 pub mod traffic;
+
+pub use error::{DrivenError, ExecutionError};

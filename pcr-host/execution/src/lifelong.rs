@@ -122,6 +122,7 @@ pub use world_changes::ChangeEffect;
 
 pub use gates::{Gate, gates};
 
+use crate::error::ExecutionError;
 use endpoints::Endpoints;
 use pcr_formats::import::ImportedLayout;
 use route_graph::RouteGraph;
@@ -131,7 +132,7 @@ use serde::Serialize;
 ///
 /// # Errors
 /// An edge that is no path.
-pub fn well_formedness(imported: &ImportedLayout, seed: u64) -> Result<WellFormedness, String> {
+pub fn well_formedness(imported: &ImportedLayout, seed: u64) -> Result<WellFormedness, ExecutionError> {
     let site = RouteGraph::new(imported)?;
     Ok(Endpoints::of(&site, seed).report(&site, &imported.layout))
 }

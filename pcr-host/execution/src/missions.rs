@@ -1,5 +1,6 @@
 //! Missions of one's own: the answer of `pcr traffic --missions`.
 
+use crate::error::ExecutionError;
 use crate::lifelong::site_changes::{self, BreakdownEntry, ClosureEntry};
 use crate::lifelong::{MissionResult, MissionRun, RunCertificate, run_missions};
 use pcr_formats::import::ImportedLayout;
@@ -100,8 +101,8 @@ pub struct WaitEntry {
 }
 
 /// The proof of a run by its scenario, or, where the scenario is not proved, by what was recorded; and whether it is by the scenario.
-fn certificate(run: &MissionRun) -> Result<(MotionCertificate, bool), String> {
-    let of_scenario = MotionCertificate::prove::<f64>(&run.scenario).map_err(|error| error.to_string())?;
+fn certificate(run: &MissionRun) -> Result<(MotionCertificate, bool), ExecutionError> {
+    let of_scenario = MotionCertificate::prove::<f64>(&run.scenario).map_err(ExecutionError::Certificate)?;
     if of_scenario.verdict == "proved" {
         return Ok((of_scenario, true));
     }
@@ -121,7 +122,7 @@ impl MissionsReport {
         imported: &ImportedLayout,
         fleet: &FleetMissions,
         told: &dyn Fn(f64, usize),
-    ) -> Result<(Self, Option<Scenario>), String> {
+    ) -> Result<(Self, Option<Scenario>), ExecutionError> {
         let run = run_missions(imported, fleet, told)?;
         let (certificate, is_exact) = certificate(&run)?;
         let node = |place: usize| imported.layout.nodes[place].id.to_string();

@@ -231,21 +231,21 @@ impl TrafficArgs {
         let missions_file = self.missions.as_deref().unwrap_or(Path::new("-"));
         let fleet = FleetMissions::read(&files.sources(), &imported.layout, &imported.vehicle)
             .map_err(|error| files.wrong(error))?;
-        let wrong = |problem: String| CliError::wrong(missions_file, problem);
         if fleet.vehicles.is_empty() {
-            return Err(wrong("there is no vehicle; add lines of the kind vehicle, or --vehicles FILE".into()));
+            let problem = "there is no vehicle; add lines of the kind vehicle, or --vehicles FILE";
+            return Err(CliError::wrong(missions_file, problem));
         }
         if fleet.vehicles.iter().any(|vehicle| vehicle.traits.size == SizeSource::Assumed) {
             pcr_exclusions::sized(imported).map_err(|error| CliError::wrong(layout, error))?;
         }
         if fleet.missions.is_empty() {
-            return Err(wrong("there is no mission".into()));
+            return Err(CliError::wrong(missions_file, "there is no mission"));
         }
         let progress = ProgressLine::new(format!("{}: missions", missions_file.display()));
         let told = |_: f64, over: usize| progress.set(over, fleet.missions.len());
         let answer = MissionsReport::run(imported, &fleet, &told);
         drop(progress);
-        let (mut answer, mut scenario) = answer.map_err(wrong)?;
+        let (mut answer, mut scenario) = answer.map_err(|problem| CliError::wrong(missions_file, problem))?;
         acknowledge(&mut answer.warnings);
         if let Some(scenario) = &mut scenario {
             acknowledge(&mut scenario.warnings);

@@ -7,6 +7,7 @@
 
 use super::lifelong_report::{LifelongReport, LifelongRunEntry, TrialRun};
 use super::{CoordinationMethod, LifelongOptions, LifelongResult};
+use crate::error::ExecutionError;
 use pcr_formats::import::ImportedLayout;
 use pcr_formats::missions::SiteChanges;
 
@@ -32,7 +33,7 @@ impl LifelongReport {
         changes: &SiteChanges,
         methods: &[CoordinationMethod],
         told: &dyn Fn(f64, f64),
-    ) -> Result<Self, String> {
+    ) -> Result<Self, ExecutionError> {
         let duration = request.duration.min(TRIAL);
         let mut over = 0.0;
         let mut run = |robots: usize, duration: f64| {

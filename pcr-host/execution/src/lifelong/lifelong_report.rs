@@ -4,6 +4,7 @@ use super::site_changes::{self, BreakdownEntry, ClosureEntry};
 use super::{
     CoordinationMethod, DelayModel, LifelongOptions, LifelongResult, MeasuredLifelongRun, WellFormedness, run,
 };
+use crate::error::ExecutionError;
 use pcr_formats::import::ImportedLayout;
 use pcr_formats::missions::SiteChanges;
 use serde::Serialize;
@@ -79,7 +80,7 @@ impl LifelongReport {
         imported: &ImportedLayout,
         request: LifelongOptions,
         methods: &[CoordinationMethod],
-    ) -> Result<Self, String> {
+    ) -> Result<Self, ExecutionError> {
         Self::watched(imported, request, &SiteChanges::default(), methods, &|_| {})
     }
 
@@ -94,7 +95,7 @@ impl LifelongReport {
         changes: &SiteChanges,
         methods: &[CoordinationMethod],
         told: &dyn Fn(f64),
-    ) -> Result<Self, String> {
+    ) -> Result<Self, ExecutionError> {
         let mut well_formedness = WellFormedness::default();
         let (mut runs, mut alone) = (Vec::new(), 0.0);
         let (mut closures, mut breakdowns) = (Vec::new(), Vec::new());

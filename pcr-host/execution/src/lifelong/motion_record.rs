@@ -12,6 +12,7 @@ use pcr_certify::raw::{self, RawAgent, RawAngle, RawMotion, RawSegment};
 use pcr_core::{Curve, TurnSide};
 use pcr_formats::scenario::{PathSegment, PlacedSegment};
 use serde::Serialize;
+use std::fmt;
 
 /// Result of the checker for all windows of a run.
 #[derive(Clone, Debug, Default, PartialEq, Serialize)]
@@ -50,7 +51,7 @@ impl RunCertificate {
     ) {
         let begin = window.begin;
         let mut widened = false;
-        let records: Result<Vec<RecordedMotion>, String> = robots
+        let records: Result<Vec<RecordedMotion>, RecordError> = robots
             .iter_mut()
             .zip(window.places.iter_mut().zip(&window.layers))
             .enumerate()
@@ -64,11 +65,10 @@ impl RunCertificate {
                 // may end slightly beside each other.
                 let apart = (ends.at[0] - place.at[0]).hypot(ends.at[1] - place.at[1]);
                 if apart > ROUNDING + gaps + 2.0 * site.position_error {
-                    return Err(format!("robot {id}: its record ends at {:?}, it is at {:?}", ends.at, place.at));
+                    return Err(RecordError::Place(id as u64, [ends.at, place.at]));
                 }
                 if site.is_outline(layer) && wrapped(ends.heading - place.heading).abs() > JUMP {
-                    let [recorded, now] = [ends.heading, place.heading];
-                    return Err(format!("robot {id}: its record ends with the heading {recorded}, it has {now}"));
+                    return Err(RecordError::Heading(id as u64, [ends.heading, place.heading]));
                 }
                 let gaps = if apart > ROUNDING { gaps + apart } else { gaps };
                 record.grow(gaps);
@@ -76,7 +76,7 @@ impl RunCertificate {
                 Ok(record)
             })
             .collect();
-        let result = records.and_then(|records| found(&records, [begin, end]).map_err(|wrong| wrong.to_string()));
+        let result = records.and_then(|records| found(&records, [begin, end]).map_err(RecordError::Certify));
         window.begin = end;
         self.windows += 1;
         match result {
@@ -88,7 +88,7 @@ impl RunCertificate {
                 self.undecided += if widened { contacts + undecided } else { undecided };
             }
             Err(problem) => {
-                self.error.get_or_insert(problem);
+                self.error.get_or_insert(problem.to_string());
             }
         }
         self.verdict = match (self.contacts, self.undecided, &self.error) {
@@ -96,6 +96,37 @@ impl RunCertificate {
             (0, 0, None) => "proved",
             _ => "undecided",
         };
+    }
+}
+
+/// Why recorded motions are not certified.
+#[derive(Clone, Debug, PartialEq)]
+enum RecordError {
+    /// The record of this robot has a gap at this time \[s\].
+    Gap(u64, f64),
+    /// The record of this robot ends at this time \[s\], before the others.
+    Short(u64, f64),
+    /// The record of this robot ends at the first point, and the robot is at the second one \[m\].
+    Place(u64, [[f64; 2]; 2]),
+    /// The record of this robot ends with the first heading, and the robot has the second one \[rad\].
+    Heading(u64, [f64; 2]),
+    /// The motions are no input of the certificate.
+    Certify(CertifyError),
+}
+
+impl fmt::Display for RecordError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Gap(id, time) => write!(f, "robot {id}: a gap in what it did at {time} s"),
+            Self::Short(id, time) => write!(f, "robot {id}: what it did ends at {time} s"),
+            Self::Place(id, [recorded, now]) => {
+                write!(f, "robot {id}: its record ends at {recorded:?}, it is at {now:?}")
+            }
+            Self::Heading(id, [recorded, now]) => {
+                write!(f, "robot {id}: its record ends with the heading {recorded}, it has {now}")
+            }
+            Self::Certify(wrong) => wrong.fmt(f),
+        }
     }
 }
 
@@ -164,7 +195,7 @@ impl RecordedMotion {
         phases: &[RobotPhase],
         (trail, since): (&[usize], f64),
         begin: WindowStart,
-    ) -> Result<(Self, WindowStart, f64), String> {
+    ) -> Result<(Self, WindowStart, f64), RecordError> {
         let (travel, length) = travel(id, window, phases)?;
         if site.is_outline(layer) {
             return Ok(body(site, (id, layer), travel, length, (trail, since), begin));
@@ -228,13 +259,13 @@ const NO_GAP: f64 = 1e-9;
 const JUMP: f64 = 2.0 * STRAIGHT;
 
 /// The times of the phases in a window, and the length that is travelled \[m\].
-fn travel(id: u64, [begin, end]: [f64; 2], phases: &[RobotPhase]) -> Result<(RawMotion, f64), String> {
+fn travel(id: u64, [begin, end]: [f64; 2], phases: &[RobotPhase]) -> Result<(RawMotion, f64), RecordError> {
     let mut travel = RawMotion { start: begin, phases: Vec::new(), lag: 0.0, time_excess: 0.0 };
     let (mut time, mut length) = (0.0, 0.0);
     for phase in phases {
         // Each phase begins where the one before ends, except for rounding of the summed times.
         if (phase.time - begin - time).abs() > 1e-6 {
-            return Err(format!("robot {id}: a gap in what it did at {} s", phase.time));
+            return Err(RecordError::Gap(id, phase.time));
         }
         let to = time + phase.duration;
         let further = length + 0.5 * (phase.speed[0] + phase.speed[1]) * phase.duration;
@@ -242,7 +273,7 @@ fn travel(id: u64, [begin, end]: [f64; 2], phases: &[RobotPhase]) -> Result<(Raw
         (time, length) = (to, further);
     }
     if (time - (end - begin)).abs() > 1e-6 {
-        return Err(format!("robot {id}: what it did ends at {} s", begin + time));
+        return Err(RecordError::Short(id, begin + time));
     }
     Ok((travel, length))
 }

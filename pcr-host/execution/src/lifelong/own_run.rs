@@ -11,6 +11,7 @@ use super::run_state::LifelongState;
 use super::trajectory;
 use super::world_changes::ChangeId;
 use super::{CoordinationMethod, DelayModel, LifelongOptions};
+use crate::error::ExecutionError;
 use pcr_formats::import::ImportedLayout;
 use pcr_formats::missions::{FleetMissions, FleetVehicle};
 use pcr_formats::scenario::Scenario;
@@ -84,7 +85,7 @@ pub fn run_missions(
     imported: &ImportedLayout,
     fleet: &FleetMissions,
     told: &dyn Fn(f64, usize),
-) -> Result<MissionRun, String> {
+) -> Result<MissionRun, ExecutionError> {
     let mut run = LifelongState::of_fleet(imported, fleet)?;
     run.refuse_impossible(0.0);
     let window = CheckWindow::new(&run.site, &run.robots);
@@ -124,7 +125,7 @@ pub fn run_missions(
 
 impl LifelongState {
     /// The fleet of a file, before anything happens.
-    fn of_fleet(imported: &ImportedLayout, fleet: &FleetMissions) -> Result<Self, String> {
+    fn of_fleet(imported: &ImportedLayout, fleet: &FleetMissions) -> Result<Self, ExecutionError> {
         let FleetMissions { vehicles, .. } = fleet;
         let mut layers: Vec<VehicleLayer> = Vec::new();
         let mut layer_of = Vec::new();
@@ -142,16 +143,12 @@ impl LifelongState {
         let starts: Vec<usize> =
             vehicles.iter().zip(&layer_of).map(|(it, layer)| layer * site.places() + it.start).collect();
         for (robot, &start) in starts.iter().enumerate() {
-            if let Some(atom) = site.backward(layer_of[robot]) {
-                let edge = site.atoms[atom].edge.map(|edge| imported.layout.edges[edge].id.to_string());
-                return Err(format!(
-                    "vehicle {} drives backward on edge {}, which is not possible with an outline yet; give it a radius",
-                    id(robot),
-                    edge.unwrap_or_default()
-                ));
+            if let Some(edge) = site.backward(layer_of[robot]) {
+                let edge = imported.layout.edges[edge].id.to_string();
+                return Err(ExecutionError::Backward { vehicle: id(robot).clone(), edge });
             }
             if let Some(other) = starts[..robot].iter().position(|&other| site.collide(other, start)) {
-                return Err(format!("vehicles {} and {} touch where they start", id(other), id(robot)));
+                return Err(ExecutionError::Touching([other, robot].map(|robot| id(robot).clone())));
             }
         }
         let ends = Endpoints::of(&site, 1);
@@ -380,8 +377,8 @@ impl LifelongState {
         name: &str,
         duration: f64,
         mut window: CheckWindow,
-    ) -> Result<MissionRun, String> {
-        let Some(own) = &self.own else { return Err("there are no missions".into()) };
+    ) -> Result<MissionRun, ExecutionError> {
+        let Some(own) = &self.own else { return Err(ExecutionError::NoMissions) };
         let missions = own.missions.iter().map(|it| MissionResult {
             vehicle: it.vehicle,
             start: it.begun,
@@ -405,7 +402,7 @@ impl LifelongState {
         for ((robot, it), vehicle) in self.robots.iter().enumerate().zip(&fleet.vehicles) {
             let start = self.site.layer_of(it.way.end()) * self.site.places() + vehicle.start;
             let agent = trajectory::agent(&self.site, it, robot as u64 + 1, &vehicle.id, start);
-            agents.push(agent.map_err(|problem| format!("vehicle {}: {problem}", vehicle.id))?);
+            agents.push(agent.map_err(|problem| ExecutionError::Driven(vehicle.id.clone(), problem))?);
         }
         let end = |robot: &LifelongRobot| robot.way.node(&self.site, robot.at).map(|node| node % self.site.places());
         let ends = self.robots.iter().map(end).collect();

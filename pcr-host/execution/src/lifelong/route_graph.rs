@@ -10,6 +10,7 @@
 use super::gates::ElementContact;
 use super::kinematic_limits::KinematicLimits;
 use super::route_element::{ElementMaker, RouteElement, STRAIGHT, wrapped};
+use crate::error::ExecutionError;
 use pcr_core::InvalidInput;
 use pcr_formats::import::{Facing, ImportedLayout, Layout, RouteStep, VehicleTraits};
 use pcr_formats::scenario::PathSegment;
@@ -116,7 +117,7 @@ impl RouteGraph {
     ///
     /// # Errors
     /// An edge that is not a path.
-    pub(super) fn new(imported: &ImportedLayout) -> Result<Self, String> {
+    pub(super) fn new(imported: &ImportedLayout) -> Result<Self, ExecutionError> {
         let ImportedLayout { layout, vehicle } = imported;
         Self::layered(layout, &[VehicleLayer { vehicle: vehicle.clone(), forbidden: Vec::new() }])
     }
@@ -125,7 +126,7 @@ impl RouteGraph {
     ///
     /// # Errors
     /// An edge that is not a path.
-    pub(super) fn layered(layout: &Layout, layers: &[VehicleLayer]) -> Result<Self, String> {
+    pub(super) fn layered(layout: &Layout, layers: &[VehicleLayer]) -> Result<Self, ExecutionError> {
         let level = layout.largest_level();
         let count = layout.nodes.len();
         let points: Vec<[f64; 2]> = layers.iter().flat_map(|_| layout.nodes.iter().map(|node| node.point)).collect();
@@ -144,12 +145,12 @@ impl RouteGraph {
                 .collect();
             let (vehicle, is_known) = faced(vehicle, steps.iter().map(|(_, step)| step.facing()));
             let shape = ConvexBody::of_vehicle(vehicle.footprint.as_ref(), vehicle.radius);
-            let shape = shape.map_err(|invalid| format!("the outline of the vehicle: {invalid}"))?;
+            let shape = shape.map_err(ExecutionError::Outline)?;
             let maker = ElementMaker { layout, vehicle, shape, layer, is_known };
             for (place, step) in steps {
                 let mut atom = maker
                     .along(step, place)
-                    .map_err(|invalid| format!("edge {}: {invalid}", layout.edges[place].id))?;
+                    .map_err(|invalid| ExecutionError::Edge(layout.edges[place].id.to_string(), invalid))?;
                 off = off.max(step.deviation() + maker.vehicle.moved_by(step.turned()) + atom.gap(&points));
                 atom.ends = atom.ends.map(|node| layer * count + node);
                 atoms.push(atom);
@@ -163,16 +164,16 @@ impl RouteGraph {
             coming[atom.ends[1]].push(place);
         }
         let at_nodes = at_nodes(&makers, &mut atoms, &points, [&coming, &leaving]);
-        let at_nodes = at_nodes.map_err(|invalid| format!("a node: {invalid}"))?;
+        let at_nodes = at_nodes.map_err(ExecutionError::Node)?;
         let gaps = atoms.iter().map(|atom| atom.gap(&points)).fold(0.0, f64::max);
         let layers = makers.into_iter().map(|ElementMaker { vehicle, shape, .. }| {
             // Where the heading changes by less than a corner, nobody turns.
             let straight = if shape.is_disc() { 0.0 } else { 2.0 * STRAIGHT * shape.reach() };
             let larger = vehicle.margin + off + GAPS * gaps + 0.5 * ROOM + straight;
-            let body = shape.inflated(larger).map_err(|invalid| invalid.to_string())?;
+            let body = shape.inflated(larger).map_err(ExecutionError::Outline)?;
             Ok(LayerBody { vehicle, shape, body })
         });
-        let layers: Vec<LayerBody> = layers.collect::<Result<_, String>>()?;
+        let layers: Vec<LayerBody> = layers.collect::<Result<_, ExecutionError>>()?;
         let reach = layers.iter().map(|layer| layer.body.reach()).fold(0.0, f64::max);
         let near = neighbours(&atoms, 2.0 * reach);
         let back = |(place, atom): (usize, &RouteElement)| {
@@ -205,7 +206,7 @@ impl RouteGraph {
             covers,
         };
         let motions = site.atoms.iter().try_for_each(|atom| atom.motion(site.body_of(atom)).map(drop));
-        motions.map_err(|invalid| invalid.to_string())?;
+        motions.map_err(ExecutionError::Motion)?;
         Ok(site)
     }
 
@@ -219,10 +220,10 @@ impl RouteGraph {
         !self.layers[layer].body.is_disc()
     }
 
-    /// An atom on which the outlines of a layer drive backward.
+    /// An edge of the layout on which the outlines of a layer drive backward.
     pub(super) fn backward(&self, layer: usize) -> Option<usize> {
-        let backward = |atom: &RouteElement| atom.layer == layer && atom.facing != 0.0;
-        self.atoms.iter().position(backward)
+        let is_backward = |atom: &&RouteElement| atom.layer == layer && atom.facing != 0.0;
+        self.atoms.iter().filter(is_backward).find_map(|atom| atom.edge)
     }
 
     /// Number of nodes of the layout, each of which is in all layers.

@@ -9,6 +9,7 @@ use super::route_graph::RouteGraph;
 use super::run_state::LifelongState;
 use super::tasks::TaskStream;
 use super::{CoordinationMethod, LifelongOptions};
+use crate::error::ExecutionError;
 use pcr_formats::import::ImportedLayout;
 use pcr_formats::missions::SiteChanges;
 use std::time::{Duration, Instant};
@@ -32,7 +33,7 @@ const QUIET: f64 = 60.0;
 ///
 /// # Errors
 /// An edge that is no path, or a layout without room for any robot.
-pub fn run(imported: &ImportedLayout, request: LifelongOptions) -> Result<MeasuredLifelongRun, String> {
+pub fn run(imported: &ImportedLayout, request: LifelongOptions) -> Result<MeasuredLifelongRun, ExecutionError> {
     watched(imported, request, &SiteChanges::default(), &|_| {})
 }
 
@@ -45,7 +46,7 @@ pub fn watched(
     request: LifelongOptions,
     changes: &SiteChanges,
     told: &dyn Fn(f64),
-) -> Result<MeasuredLifelongRun, String> {
+) -> Result<MeasuredLifelongRun, ExecutionError> {
     driven(LifelongState::new(imported, request, changes, None)?, request, told)
 }
 
@@ -59,11 +60,15 @@ pub fn run_tasks(
     imported: &ImportedLayout,
     request: LifelongOptions,
     tasks: &TaskStream,
-) -> Result<MeasuredLifelongRun, String> {
+) -> Result<MeasuredLifelongRun, ExecutionError> {
     driven(LifelongState::new(imported, request, &SiteChanges::default(), Some(tasks))?, request, &|_| {})
 }
 
-fn driven(mut run: LifelongState, request: LifelongOptions, told: &dyn Fn(f64)) -> Result<MeasuredLifelongRun, String> {
+fn driven(
+    mut run: LifelongState,
+    request: LifelongOptions,
+    told: &dyn Fn(f64),
+) -> Result<MeasuredLifelongRun, ExecutionError> {
     let steady = if run.tasks.is_none() { run.alone(START * request.duration) } else { 0 };
     let alone = steady as f64 * 3600.0 / ((1.0 - START) * request.duration);
     let mut certificate = RunCertificate::new();

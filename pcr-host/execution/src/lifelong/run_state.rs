@@ -22,6 +22,7 @@ use super::tasks::{TaskQueue, TaskStream};
 use super::timetable::Timetable;
 use super::world_changes::WorldChanges;
 use super::{CoordinationMethod, LifelongOptions};
+use crate::error::ExecutionError;
 use pcr_formats::import::ImportedLayout;
 use pcr_formats::missions::SiteChanges;
 use std::time::{Duration, Instant};
@@ -76,9 +77,9 @@ impl LifelongState {
         request: LifelongOptions,
         changes: &SiteChanges,
         tasks: Option<&TaskStream>,
-    ) -> Result<Self, String> {
+    ) -> Result<Self, ExecutionError> {
         if !changes.is_empty() && request.method != CoordinationMethod::Orders {
-            return Err(format!("{} are compared on sites that do not change", request.method.name()));
+            return Err(ExecutionError::Changes(request.method.name()));
         }
         let site = RouteGraph::new(imported)?;
         let ends = Endpoints::of(&site, request.seed);
@@ -104,7 +105,7 @@ impl LifelongState {
         starts: &[usize],
         request: LifelongOptions,
         changes: &SiteChanges,
-    ) -> Result<Self, String> {
+    ) -> Result<Self, ExecutionError> {
         // With fewer robots than safe ends a robot can always make way at a free end.
         let is_tight = starts.len() >= ends.capacity;
         let places = (may_queue && is_tight).then(|| queued(imported, &site));
@@ -124,7 +125,7 @@ impl LifelongState {
             ends.harm(&site);
         }
         if starts.is_empty() {
-            return Err("the layout has no two nodes that can be reached from one another".into());
+            return Err(ExecutionError::NoRoom);
         }
         let abilities = |node: usize| KinematicLimits::of(&site.layers[site.layer_of(node)].vehicle);
         let robots: Vec<LifelongRobot> =

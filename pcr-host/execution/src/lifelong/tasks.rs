@@ -1,6 +1,7 @@
 //! Starting places of robots, and a stream of tasks, each of which any robot may do, also on its way to another one.
 
 use super::route_graph::RouteGraph;
+use crate::error::ExecutionError;
 use std::collections::VecDeque;
 use std::time::Duration;
 
@@ -15,15 +16,15 @@ pub struct TaskStream {
 
 impl TaskStream {
     /// The start nodes, after a check that nodes exist and that robots do not touch there.
-    pub(super) fn starts(&self, site: &RouteGraph) -> Result<Vec<usize>, String> {
+    pub(super) fn starts(&self, site: &RouteGraph) -> Result<Vec<usize>, ExecutionError> {
         let count = site.points.len();
         let all = self.starts.iter().chain(self.tasks.iter().map(|(node, _)| node));
-        if let Some(node) = all.into_iter().find(|&&node| node >= count) {
-            return Err(format!("node {node} is none of the {count} of the layout"));
+        if let Some(&node) = all.into_iter().find(|&&node| node >= count) {
+            return Err(ExecutionError::NoSuchNode { node, count });
         }
         for (robot, &start) in self.starts.iter().enumerate() {
             if let Some(other) = self.starts[..robot].iter().position(|&other| site.collide(other, start)) {
-                return Err(format!("robots {other} and {robot} touch where they begin"));
+                return Err(ExecutionError::Touching([other, robot].map(|robot| robot.to_string())));
             }
         }
         Ok(self.starts.clone())

@@ -7,6 +7,7 @@
 use super::robot::{LifelongRobot, RobotPhase};
 use super::route_element::{STRAIGHT, wrapped};
 use super::route_graph::RouteGraph;
+use crate::error::DrivenError;
 use pcr_core::{Curve, TurnSide};
 use pcr_formats::scenario::{Agent, MotionPiece, MotionSpec, PathSegment, PlacedSegment};
 use std::collections::VecDeque;
@@ -104,7 +105,7 @@ pub(super) fn agent(
     id: u64,
     label: &str,
     start: usize,
-) -> Result<Agent, String> {
+) -> Result<Agent, DrivenError> {
     let layer = site.layer_of(start);
     let vehicle = &site.layers[layer].vehicle;
     let mut path = DrivenPath::default();
@@ -221,7 +222,7 @@ fn pieces(
     robot: &LifelongRobot,
     before: &[f64],
     length: f64,
-) -> Result<Vec<MotionPiece>, String> {
+) -> Result<Vec<MotionPiece>, DrivenError> {
     let borders: Vec<f64> = path.segments.iter().flat_map(|segment| segment.driven).collect();
     let is_border = |at: f64| borders.iter().any(|border| (border - at).abs() < NEAR);
     // Stops where a segment ends, and the end.
@@ -269,7 +270,7 @@ fn pieces(
             next += 1;
         }
         if (standing > 0.0 && stood <= 0.0) || (turning > 0.0 && ahead > 0.0) {
-            return Err("a turn in place without a stop".into());
+            return Err(DrivenError::TurnWithoutStop);
         }
         let mut phase = |duration, end, in_place| pieces.push(DrivenPhase { duration, end, in_place });
         if standing > 0.0 {
@@ -282,7 +283,7 @@ fn pieces(
         let driven: f64 = done.iter().map(|phase| 0.5 * (phase.speed[0] + phase.speed[1]) * phase.duration).sum();
         let way = ahead + turning;
         if way > 0.0 && driven <= 0.0 {
-            return Err("a path without a motion".into());
+            return Err(DrivenError::PathWithoutMotion);
         }
         let scale = if driven > 0.0 { way / driven } else { 0.0 };
         for own in done {

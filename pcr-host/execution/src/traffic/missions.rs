@@ -151,7 +151,7 @@ fn attempt(imported: &ImportedLayout, count: usize, mut random: SplitMix64) -> M
             Ok(Some(agent)) => {
                 let mission = RandomMission { ends, agent };
                 let added = if clear(&mission) { crowd.add(&mission.agent) } else { return Err(None) };
-                added.map(|()| mission).map_err(Some)
+                added.map(|()| mission).map_err(|problem| Some(problem.to_string()))
             }
             Err(error) => Err(Some(format!("the way is no path: {error}"))),
         };

@@ -2,6 +2,7 @@
 
 use super::{CORNER_RADIUS, DocumentSection, EvaluationError, PaperFleets, Thoroughness};
 use crate::error::LabError;
+use pcr_execution::ExecutionError;
 use pcr_execution::lifelong::{CoordinationMethod, DelayModel, LifelongOptions, LifelongReport, LifelongRunEntry};
 use pcr_formats::import::{self, ImportOptions, ImportedLayout, InputFormat, Warnings};
 use pcr_planning::figures::digits;
@@ -92,7 +93,9 @@ pub(super) fn section(fleets: &PaperFleets, extent: Thoroughness) -> Result<Docu
                     break;
                 }
             }
-            let refused = |problem| EvaluationError::Method(format!("{name}, {agents} robots"), problem);
+            let refused = |problem: ExecutionError| {
+                EvaluationError::Method(format!("{name}, {agents} robots"), problem.to_string())
+            };
             let of_seed = |seed| {
                 LifelongReport::run(&imported, LifelongOptions { seed, ..request }, &CoordinationMethod::ALL)
                     .map_err(refused)

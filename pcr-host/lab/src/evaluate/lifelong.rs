@@ -2,6 +2,7 @@
 //! the same random delays.
 
 use super::{DocumentSection, EvaluationError, PaperFleets, Thoroughness};
+use pcr_execution::ExecutionError;
 use pcr_execution::lifelong::{
     CoordinationMethod, DelayModel, LifelongOptions, LifelongReport, LifelongRunEntry, streets,
 };
@@ -92,7 +93,7 @@ fn driven(
 ) -> Result<LifelongReport, EvaluationError> {
     let (duration, delays) = (3600.0 * hours, DelayModel::default());
     let request = LifelongOptions { agents, duration, delays, seed: 1, method: CoordinationMethod::Orders };
-    let refused = |problem| EvaluationError::Method(format!("{agents} robots"), problem);
+    let refused = |problem: ExecutionError| EvaluationError::Method(format!("{agents} robots"), problem.to_string());
     LifelongReport::run(imported, request, methods).map_err(refused)
 }
 

@@ -46,7 +46,7 @@ pub(super) fn section(fleets: &PaperFleets, extent: Thoroughness) -> Result<Docu
         let done = |delays: DelayModel| {
             let request =
                 LifelongOptions { agents: 0, duration: LONGEST, delays, seed: 1, method: CoordinationMethod::Orders };
-            run_tasks(&imported, request, &tasks).map_err(problem)
+            run_tasks(&imported, request, &tasks).map_err(|refused| problem(refused.to_string()))
         };
         let runs = [done(DelayModel { stopped: 0.0, slip: 0.0, ..usual })?, done(usual)?];
         // The rate of those that are done would be too high.

@@ -73,7 +73,7 @@ fn generated(count: usize, crew: &FleetSimulationOptions) -> Result<SimulatedSit
 fn placed(imported: ImportedLayout, crew: &FleetSimulationOptions) -> Result<SimulatedSite, String> {
     let usual = SimulatedTraits::default();
     let small = SimulatedTraits { radius: 0.3, speed: 1.3, acceleration: 0.8, ..usual };
-    let form = well_formedness(&imported, crew.seed)?;
+    let form = well_formedness(&imported, crew.seed).map_err(|error| error.to_string())?;
     let place = |id: &import::ElementId| imported.layout.nodes.iter().position(|node| node.id == *id);
     let goals = form.safe_ends.iter().filter_map(place).collect();
     SimulatedSite::new(imported.layout.clone(), goals, crew.vehicles, &ProtocolVersion::ALL, &[usual, small], crew.seed)
