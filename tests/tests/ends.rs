@@ -42,7 +42,7 @@ fn what_is_called_free_is_apart_in_fixed_point() {
 }
 
 fn directed<S: HostScalar>() {
-    let found = searches::<S>(0, count(40, 8), count(200, 10));
+    let found = searches::<S>(0, count(16, 8), count(200, 10));
     println!("{}", found.row(S::NAME));
     assert_eq!(found.lost, [""; 0], "{}", S::NAME);
 }

@@ -98,8 +98,6 @@ mod scheduling;
 pub mod site_changes;
 mod speed_limits;
 mod starvation;
-#[cfg(test)]
-mod starvation_tests;
 mod streets;
 mod task_assignment;
 mod tasks;
