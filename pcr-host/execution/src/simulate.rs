@@ -57,7 +57,7 @@ pub use outcome::{
 pub use replan::ClearanceEntry;
 pub use simulation_task::{ReleasedMission, RobotTask, SimulationTask, StandingObstacle};
 pub use speed_limited_path::{OwnedMotion, SpeedLimitedPath};
-pub use true_state::{Disturbance, HELD_EVERY};
+pub use true_state::Disturbance;
 pub use vector::PlaneVector;
 
 use orca::OrcaController;
@@ -69,7 +69,7 @@ use potential::PotentialFieldController;
 use replan::BlockedRobot;
 use robot_estimate::ErrorBounds;
 use serde::Serialize;
-use true_state::{MotionCommand, TurnState};
+use true_state::{HELD_EVERY, MotionCommand, TurnState};
 use true_world::TrueWorld;
 
 /// Time of a frame \[s\]: the camera of the paper sees 30 a second.

@@ -102,7 +102,7 @@ impl Footprint {
 
     /// Whether the outline is exactly the same when the vehicle is turned by half a turn about its reference point. A polygon with
     /// needless corners on one side only counts as another one.
-    pub fn is_same_backward(&self) -> bool {
+    pub(crate) fn is_same_backward(&self) -> bool {
         let corners = &self.polygon;
         let opposite = corners.iter().cycle().skip(corners.len() / 2);
         corners.len().is_multiple_of(2) && corners.iter().zip(opposite).all(|(a, b)| *a == b.map(|x| -x))

@@ -221,12 +221,12 @@ pub fn parse(text: &str) -> Result<JsonNode<'_>, SyntaxError> {
 ///
 /// # Errors
 /// [`SyntaxError`] where it is not such JSON.
-pub fn parse_strict(text: &str) -> Result<JsonNode<'_>, SyntaxError> {
+pub(crate) fn parse_strict(text: &str) -> Result<JsonNode<'_>, SyntaxError> {
     JsonParser { is_strict: true, ..JsonParser::new(text) }.whole()
 }
 
 /// Parses several values, one after the other, as [`parse_strict`] does one; nothing follows an error.
-pub fn parse_sequence(text: &str) -> impl Iterator<Item = Result<JsonNode<'_>, SyntaxError>> {
+pub(crate) fn parse_sequence(text: &str) -> impl Iterator<Item = Result<JsonNode<'_>, SyntaxError>> {
     let mut parser = Some(JsonParser { is_strict: true, ..JsonParser::new(text) });
     std::iter::from_fn(move || {
         parser.as_mut()?.peek()?;

@@ -82,7 +82,7 @@ impl<'a, S: HostScalar> AgentRegions<'a, S> {
     }
 
     /// Index of the agent of the row in [`AgentRegions::agents`], which is its index in the table.
-    pub fn agent_index(&self) -> usize {
+    pub(crate) fn agent_index(&self) -> usize {
         self.place
     }
 

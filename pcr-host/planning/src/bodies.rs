@@ -61,7 +61,7 @@ impl Body {
     }
 
     /// Returns the lengths on the path of the agent, outward, of lengths on that of the body.
-    pub fn on_agent(&self, lengths: [f64; 2]) -> [f64; 2] {
+    pub(crate) fn on_agent(&self, lengths: [f64; 2]) -> [f64; 2] {
         if self.is_whole() {
             return lengths;
         }
@@ -88,12 +88,12 @@ impl Body {
     }
 
     /// Whether it is there before the agent sets off.
-    pub fn is_at_start(&self) -> bool {
+    pub(crate) fn is_at_start(&self) -> bool {
         self.stands()[0]
     }
 
     /// Whether it is there after the arrival of the agent.
-    pub fn is_at_end(&self) -> bool {
+    pub(crate) fn is_at_end(&self) -> bool {
         self.stands()[1]
     }
 

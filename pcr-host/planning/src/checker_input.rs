@@ -110,7 +110,7 @@ impl std::error::Error for RoundTripError {}
 ///
 /// # Panics
 /// If `agents` are not as many as the agents of the scenario.
-pub fn as_given<S: HostScalar>(discs: &Scenario, agents: &[RawAgent]) -> Result<(), RoundTripError> {
+pub(crate) fn as_given<S: HostScalar>(discs: &Scenario, agents: &[RawAgent]) -> Result<(), RoundTripError> {
     assert_eq!(discs.agents.len(), agents.len(), "the discs of the scenario");
     discs.agents.iter().zip(agents).try_for_each(|(given, held)| {
         same_disc::<S>(given, held, false)?;

@@ -31,7 +31,7 @@ pub fn outward([lo, hi]: [f64; 2]) -> [String; 2] {
 
 /// Returns the same of an interval whose ends are on a thousandth but for a rounding, less than 1e-9: such an end stays there. Edges of layouts
 /// have lengths like that, and a rounding does not add a millimetre to their locks.
-pub fn outward_but_for_rounding([lo, hi]: [f64; 2]) -> [String; 2] {
+pub(crate) fn outward_but_for_rounding([lo, hi]: [f64; 2]) -> [String; 2] {
     const ROUNDING: f64 = 1e-9;
     outward([lo + ROUNDING, hi - ROUNDING])
 }

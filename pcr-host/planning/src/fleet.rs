@@ -33,7 +33,7 @@ pub type HostPrecedenceTable = PrecedenceTable<f64, Vec<EcmEntry>, Vec<Piece<f64
 /// Largest magnitude of a heading at the start of a path, or of a turn in place, in a scenario \[rad\]: 2²⁴, the limit of the core
 /// in `f64`. It is the same in every format. Up to this limit, the error of subtracting whole turns in `f64` is below the last
 /// digit of an angle in all smaller formats.
-pub const ANGLE_LIMIT: f64 = 16_777_216.0;
+pub(crate) const ANGLE_LIMIT: f64 = 16_777_216.0;
 
 /// The angle, if it is in the range that every format has.
 fn in_angles(radians: f64) -> Option<f64> {

@@ -16,7 +16,6 @@
 //! parallel          work on all cores
 //! nodes             nodes and edges of a layout
 //! plan              delays and speeds without conflicts                 PlanReport
-//! conflict_queue    the conflicts of a fleet while its motions change   ConflictQueue
 //! safe_windows      when a part of a path is free, in large fleets      safe_intervals
 //! report            JSON, CSV and tables
 //! figures           numbers as text
@@ -29,7 +28,6 @@ pub mod certify;
 pub mod check;
 pub mod checker_input;
 pub mod checksum;
-pub mod conflict_queue;
 
 pub mod exclusion_table;
 pub mod failure;

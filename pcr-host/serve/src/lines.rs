@@ -216,7 +216,7 @@ pub fn handle(supervisor: &mut Supervisor, line: &[u8], came: f64, now: f64) -> 
 }
 
 /// Carries out a request. Ages count from the time `came` \[s\]; the line may have waited since.
-pub fn carry_out(supervisor: &mut Supervisor, request: RequestLine, came: f64, now: f64) -> LineReply {
+pub(crate) fn carry_out(supervisor: &mut Supervisor, request: RequestLine, came: f64, now: f64) -> LineReply {
     let RequestLine { id, verb, unanswered, .. } = request;
     let mut watches = None;
     let done = verb.and_then(|verb| match verb {
@@ -270,7 +270,7 @@ pub fn refusal(fault: &RequestError) -> Value {
 }
 
 /// Replaces an answer whose changes could not be stored in the journal.
-pub fn withdrawn(answer: &Value, fault: &RequestError) -> Value {
+pub(crate) fn withdrawn(answer: &Value, fault: &RequestError) -> Value {
     self::answer(answer.get("id").cloned().unwrap_or(Value::Null), Err(fault.clone()))
 }
 

@@ -53,7 +53,7 @@ pub struct LifelongResult {
 
 impl LifelongResult {
     /// Whether the run is certified free of contact, no robot went beyond its hold, and every robot came to its end.
-    pub fn is_safe(&self) -> bool {
+    pub(crate) fn is_safe(&self) -> bool {
         self.certificate.verdict == "proved" && self.authority_overruns == 0 && self.stuck == 0
     }
 }
@@ -109,7 +109,7 @@ pub struct MeasuredLifelongRun {
 
 impl MeasuredLifelongRun {
     /// Time within which this share of the decisions was made \[s\].
-    pub fn decided_within(&self, part: f64) -> f64 {
+    pub(crate) fn decided_within(&self, part: f64) -> f64 {
         let mut times = self.decisions.clone();
         times.sort_unstable();
         let place = (times.len() as f64 * part).ceil() as usize;

@@ -36,10 +36,10 @@ const CLEARANCE: f64 = 0.03;
 const OBSTACLE: f64 = 0.055;
 
 /// Starts of the robots, to which they return \[m\].
-pub const NEST: [PlaneVector; 4] = [[0.1, 0.2], [0.1, 0.4], [0.1, 0.6], [0.1, 0.8]];
+pub(crate) const NEST: [PlaneVector; 4] = [[0.1, 0.2], [0.1, 0.4], [0.1, 0.6], [0.1, 0.8]];
 
 /// Positions of the resources \[m\].
-pub const RESOURCES: [PlaneVector; 6] = [[1.0, 0.0], [1.0, 0.2], [1.0, 0.4], [1.0, 0.6], [1.0, 0.8], [1.0, 1.0]];
+pub(crate) const RESOURCES: [PlaneVector; 6] = [[1.0, 0.0], [1.0, 0.2], [1.0, 0.4], [1.0, 0.6], [1.0, 0.8], [1.0, 1.0]];
 
 /// \[m\]
 const OBSTACLES: [PlaneVector; 5] = [[0.36, 0.34], [0.36, 0.66], [0.55, 0.5], [0.55, 0.18], [0.55, 0.82]];

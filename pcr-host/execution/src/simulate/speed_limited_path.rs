@@ -132,7 +132,7 @@ impl SpeedLimitedPath {
     /// Sets the speed limit of each segment \[m/s\], by its index; infinite for none. For a turn in place it is its length
     /// divided by its duration.
     #[must_use]
-    pub fn with_speed_limits(self, top: impl Fn(usize) -> f64) -> Self {
+    pub(crate) fn with_speed_limits(self, top: impl Fn(usize) -> f64) -> Self {
         let limits = self.limits.into_iter().enumerate();
         Self { limits: limits.map(|(place, limit)| SegmentLimit { top: top(place), ..limit }).collect(), ..self }
     }

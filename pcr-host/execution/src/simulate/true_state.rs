@@ -25,7 +25,7 @@ pub struct Disturbance {
 }
 
 /// Mean time between two times at which a robot is held up \[s\].
-pub const HELD_EVERY: f64 = 10.0;
+pub(crate) const HELD_EVERY: f64 = 10.0;
 
 /// Time for which the slip of a robot stays the same \[s\].
 const SLIPPING: f64 = 1.0;

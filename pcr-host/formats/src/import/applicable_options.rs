@@ -69,7 +69,7 @@ impl ImportOptions {
     }
 
     /// An option that is given and does nothing with such a file, and why.
-    pub fn without_effect(&self, kind: InputKind) -> Option<(&'static str, &'static str)> {
+    pub(crate) fn without_effect(&self, kind: InputKind) -> Option<(&'static str, &'static str)> {
         let given = self.all().into_iter().filter(|(.., given)| *given);
         given.into_iter().find_map(|(field, option, _)| Some((option, without_effect(field, kind)?)))
     }

@@ -71,7 +71,7 @@ pub(super) fn are_in(text: &str) -> bool {
 
 /// The first bytes of a bag of ROS 2 that is read.
 #[cfg(feature = "bags")]
-pub const BAG: &[u8] = bag::records::MAGIC;
+pub(crate) const BAG: &[u8] = bag::records::MAGIC;
 
 /// Reads the poses in a bag of ROS 2 (MCAP).
 ///

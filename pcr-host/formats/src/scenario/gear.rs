@@ -26,7 +26,7 @@ impl Agent {
     }
 
     /// The number in a file (from 0) of a segment of the path: changes of gear are none.
-    pub fn file_segment(&self, segment: usize) -> usize {
+    pub(crate) fn file_segment(&self, segment: usize) -> usize {
         let before = self.path.iter().take(segment).filter(|segment| **segment == PathSegment::Cusp);
         segment - before.count()
     }

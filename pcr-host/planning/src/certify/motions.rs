@@ -88,7 +88,7 @@ impl MotionCertificate {
     ///
     /// # Errors
     /// [`ComputationError::Refused`] where a value does not fit the format, [`ComputationError::NoPair`].
-    pub fn of_pairs<S: HostScalar>(scenario: &Scenario) -> Result<Self, ComputationError> {
+    pub(crate) fn of_pairs<S: HostScalar>(scenario: &Scenario) -> Result<Self, ComputationError> {
         match Self::prove::<S>(scenario)? {
             Self { pairs: 0, error: None, .. } => Err(ComputationError::NoPair),
             proof => Ok(proof),

@@ -19,7 +19,7 @@ pub fn is_outline<S: HostScalar>(motion: &Motion<'_, S>) -> bool {
 }
 
 /// Whether a motion is one for the checker of outlines: that of an outline, or of a disc whose turns in place have a length.
-pub fn is_body<S: HostScalar>(motion: &Motion<'_, S>) -> bool {
+pub(crate) fn is_body<S: HostScalar>(motion: &Motion<'_, S>) -> bool {
     is_outline(motion) || motion.path().segments().iter().any(|segment| matches!(segment.curve(), Curve::Pivot { .. }))
 }
 
@@ -86,7 +86,7 @@ fn body<S: HostScalar>(agent: RawAgent, motion: &Motion<'_, S>) -> RawBody {
 ///
 /// # Panics
 /// If `agents` or `bodies` are not as many as the agents of the scenario.
-pub fn as_given<S: HostScalar>(
+pub(crate) fn as_given<S: HostScalar>(
     given: &Scenario,
     agents: &[RawAgent],
     bodies: &[RawBody],
@@ -179,7 +179,7 @@ pub fn agent(body: &RawBody) -> RawAgent {
 }
 
 /// A pair of bodies as one of agents, without the ranks of its pieces.
-pub fn pair_of_agents(pair: &RawOutlinePair) -> RawPair {
+pub(crate) fn pair_of_agents(pair: &RawOutlinePair) -> RawPair {
     let pieces = pair.pieces.iter().map(|piece| pcr_certify::raw::RawPiece {
         segments: piece.segments,
         lengths: piece.lengths,

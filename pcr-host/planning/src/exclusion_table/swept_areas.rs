@@ -135,7 +135,7 @@ impl SweptLayout {
     }
 
     /// Whether a place in [`SweptLayout::ids`] is that of an edge.
-    pub fn is_edge(&self, place: usize) -> bool {
+    pub(crate) fn is_edge(&self, place: usize) -> bool {
         place < self.edges
     }
 }

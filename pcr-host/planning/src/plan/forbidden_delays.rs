@@ -121,7 +121,7 @@ impl ForbiddenDelays {
     ///
     /// # Errors
     /// [`ComputationError`] if the table cannot hold them.
-    pub fn of_motions(motions: &[Motion<'_, f64>]) -> Result<Self, ComputationError> {
+    pub(crate) fn of_motions(motions: &[Motion<'_, f64>]) -> Result<Self, ComputationError> {
         let owners: Vec<BodyOwner> = (0..motions.len()).map(|agent| BodyOwner { agent, stands: [true; 2] }).collect();
         Self::between(motions, &owners, motions.len(), &|_, _| {})
     }

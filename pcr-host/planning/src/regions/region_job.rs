@@ -64,7 +64,7 @@ impl<'s, S: HostScalar> RegionJob<'s, S> {
     }
 
     /// Whether any agent has a margin.
-    pub fn has_margins(&self) -> bool {
+    pub(crate) fn has_margins(&self) -> bool {
         self.bodies.fleet.motions().iter().any(|motion| motion.margin() > S::ZERO)
     }
 

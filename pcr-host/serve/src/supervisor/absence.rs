@@ -32,7 +32,7 @@ pub struct UnplacedVehicle {
 
 impl Supervisor {
     /// Takes the vehicles that have not said where they stand, by name, in place of those before. Returns whether they are others.
-    pub fn set_unplaced(&mut self, unplaced: BTreeMap<String, UnplacedVehicle>) -> bool {
+    pub(crate) fn set_unplaced(&mut self, unplaced: BTreeMap<String, UnplacedVehicle>) -> bool {
         if unplaced == self.unplaced {
             return false;
         }
