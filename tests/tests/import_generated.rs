@@ -32,13 +32,17 @@ fn apart(a: Point, b: Point) -> f64 {
 }
 
 impl Way {
-    /// Points along a polyline, in steps of at most [`STEP`].
+    /// Points along a polyline, in steps of at most [`STEP`]; of many that are close to one another only some.
     pub(crate) fn along(corners: &[Point], room: f64, speed: Option<f64>) -> Self {
-        let mut points = Vec::new();
-        for pair in corners.windows(2) {
+        let mut points: Vec<Point> = corners.first().into_iter().copied().collect();
+        for (k, pair) in corners.windows(2).enumerate() {
             let count = (apart(pair[0], pair[1]) / STEP).ceil().max(1.0);
             let at = |k: usize| [0, 1].map(|axis| pair[0][axis] + (pair[1][axis] - pair[0][axis]) * k as f64 / count);
-            points.extend((0..=count as usize).map(at));
+            points.extend((1..count as usize).map(at));
+            let is_last = k + 2 == corners.len();
+            if is_last || points.last().is_none_or(|last| apart(*last, pair[1]) > 0.25 * STEP) {
+                points.push(pair[1]);
+            }
         }
         Self { points, room, speed }
     }
