@@ -13,7 +13,8 @@ use pcr_core::{
 const RAMP: f64 = 1e-9;
 
 /// A path, a profile and a footprint, which a motion borrows.
-pub(crate) struct OwnedMotion {
+#[derive(Clone, Debug)]
+pub struct OwnedMotion {
     segments: Vec<Segment<f64>>,
     phases: Vec<Phase<f64>>,
     outline: Option<Outline<f64, 16>>,
@@ -38,7 +39,11 @@ enum Step {
 }
 
 impl OwnedMotion {
-    pub(crate) fn new(agent: usize, trajectory: &Trajectory) -> Result<Self, Error> {
+    /// That of a trajectory; errors name this agent.
+    ///
+    /// # Errors
+    /// [`Error::Empty`], [`Error::NoFootprint`], [`Error::Time`], [`Error::TurnsOnTheWay`], [`Error::HalfTurn`], [`Error::Invalid`].
+    pub fn new(agent: usize, trajectory: &Trajectory) -> Result<Self, Error> {
         let invalid = |problem| Error::Invalid { agent, problem };
         let &first = trajectory.poses.first().ok_or(Error::Empty { agent })?;
         let footprint = trajectory.footprint.as_ref().ok_or(Error::NoFootprint { agent })?;
@@ -48,7 +53,7 @@ impl OwnedMotion {
                 let reach = corners.iter().map(|[x, y]| x.hypot(*y)).fold(0.0, f64::max);
                 let corners = corners.iter().map(|&[x, y]| Vector { x, y });
                 // By its place and by its heading.
-                let rounding = ROUNDING * (1.0 + reach);
+                let rounding = ROUNDING * (1.0 + reach) + trajectory.margin;
                 (Some(Outline::polygon(corners, rounding).map_err(invalid)?), Some(reach))
             }
         };
@@ -68,7 +73,7 @@ impl OwnedMotion {
             if reach.is_some() && is_half_turn(from, to) {
                 return Err(Error::HalfTurn { agent, waypoint: k + 1 });
             }
-            match step(path.end(), from, to, reach.is_some()) {
+            match step(path.end(), path.heading, to, reach.is_some()) {
                 None => return Err(Error::TurnsOnTheWay { agent, waypoint: k + 1 }),
                 Some(Step::Waits) => {}
                 Some(Step::Moves { length, direction }) => path.line(length, direction).map_err(invalid)?,
@@ -79,14 +84,24 @@ impl OwnedMotion {
             lengths.push(length);
         }
         let radius = match footprint {
-            Footprint::Disc { radius } => *radius,
+            Footprint::Disc { radius } => *radius + trajectory.margin,
             Footprint::Polygon { .. } => 0.0,
         };
         let phases = phases(&sections).map_err(invalid)?;
         Ok(Self { segments: path.segments, phases, outline, radius, start: first.time, lengths })
     }
 
-    pub(crate) fn motion(&self) -> Result<Motion<'_, f64>, InvalidInput> {
+    /// Length of the path at each waypoint \[m\]. A turn of an outline has a length as well: the angle times the distance of its farthest corner,
+    /// or times 0.1 m if that is less.
+    pub fn lengths(&self) -> &[f64] {
+        &self.lengths
+    }
+
+    /// The motion, for the queries of `pcr-core`. Its times are those of the waypoints.
+    ///
+    /// # Errors
+    /// A number out of range.
+    pub fn motion(&self) -> Result<Motion<'_, f64>, InvalidInput> {
         let (path, profile) = (PathRef::new(&self.segments)?, ProfileRef::new(&self.phases)?);
         match &self.outline {
             None => Motion::new(path, profile, self.radius, self.start),
@@ -95,11 +110,11 @@ impl OwnedMotion {
     }
 }
 
-/// What an agent does from the end of its path, which is at `from` but for rounding, to the next waypoint. `None` if an outline moves and turns.
-fn step(end: Point<f64>, from: TimedPose, to: TimedPose, is_outline: bool) -> Option<Step> {
+/// What an agent does from the end of its path, where it has this heading, to the next waypoint. `None` if an outline moves and turns.
+fn step(end: Point<f64>, heading: f64, to: TimedPose, is_outline: bool) -> Option<Step> {
     let [x, y] = [to.position[0] - end.x, to.position[1] - end.y];
     let (length, direction) = (x.hypot(y), y.atan2(x));
-    let by = if is_outline { wrapped(to.yaw - from.yaw) } else { 0.0 };
+    let by = if is_outline { wrapped(to.yaw - heading) } else { 0.0 };
     match (length > ROUNDING, by.abs() > ROUNDING) {
         (true, true) => None,
         (true, false) => Some(Step::Moves { length, direction }),

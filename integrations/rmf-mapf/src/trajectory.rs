@@ -1,9 +1,5 @@
 //! Trajectories: poses and times, with a footprint.
 
-use mapf::motion::r2::WaypointR2;
-use mapf::motion::se2::WaypointSE2;
-use mapf::motion::{TimePoint, Trajectory as Planned, Waypoint};
-
 /// A pose, and when it is reached.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct TimedPose {
@@ -36,12 +32,13 @@ pub enum Footprint {
 pub struct Trajectory {
     pub(crate) poses: Vec<TimedPose>,
     pub(crate) footprint: Option<Footprint>,
+    pub(crate) margin: f64,
 }
 
 impl Trajectory {
     /// A trajectory through these poses, without a footprint yet.
     pub fn new(poses: impl IntoIterator<Item = TimedPose>) -> Self {
-        Self { poses: poses.into_iter().collect(), footprint: None }
+        Self { poses: poses.into_iter().collect(), footprint: None, margin: 0.0 }
     }
 
     /// The poses of a plan in equal steps of time \[s\], as executors exchange them.
@@ -54,6 +51,12 @@ impl Trajectory {
     #[must_use]
     pub fn with_footprint(self, footprint: Footprint) -> Self {
         Self { footprint: Some(footprint), ..self }
+    }
+
+    /// Returns the trajectory with a margin around the footprint \[m\]; without it there is none.
+    #[must_use]
+    pub fn with_margin(self, margin: f64) -> Self {
+        Self { margin, ..self }
     }
 
     /// Adds waypoints in between, so that none is later than the one before by more than `longest` \[s\]. Waypoints get new indices; the
@@ -83,7 +86,7 @@ impl Trajectory {
             poses.push(to);
             indices.push(poses.len() - 1);
         }
-        (Self { poses, footprint: self.footprint.clone() }, indices)
+        (Self { poses, footprint: self.footprint.clone(), margin: self.margin }, indices)
     }
 
     /// The waypoints.
@@ -96,43 +99,13 @@ impl Trajectory {
 /// by what they move it.
 pub(crate) const ROUNDING: f64 = 1e-6;
 
-/// Whether the headings of two poses are opposite.
+/// Whether the headings of two poses are opposite, also if a motion is off by rounding at the first one.
 pub(crate) fn is_half_turn(from: TimedPose, to: TimedPose) -> bool {
-    std::f64::consts::PI - wrapped(to.yaw - from.yaw).abs() <= ROUNDING
+    std::f64::consts::PI - wrapped(to.yaw - from.yaw).abs() <= 2.0 * ROUNDING
 }
 
 /// An angle within half a turn of 0 \[rad\].
 pub(crate) fn wrapped(angle: f64) -> f64 {
     use std::f64::consts::{PI, TAU};
     (angle + PI).rem_euclid(TAU) - PI
-}
-
-fn seconds(time: TimePoint) -> f64 {
-    time.as_secs_f64()
-}
-
-fn poses<W: Waypoint>(planned: &Planned<W>, pose: impl Fn(&W) -> TimedPose) -> Trajectory {
-    Trajectory::new(planned.iter().map(|waypoint| pose(&waypoint)))
-}
-
-/// What the planner returns for robots that turn.
-impl From<&Planned<WaypointSE2>> for Trajectory {
-    fn from(planned: &Planned<WaypointSE2>) -> Self {
-        poses(planned, |waypoint| TimedPose {
-            time: seconds(waypoint.time),
-            position: waypoint.position.translation.vector.into(),
-            yaw: waypoint.position.rotation.angle(),
-        })
-    }
-}
-
-/// What it returns for robots without a heading.
-impl From<&Planned<WaypointR2>> for Trajectory {
-    fn from(planned: &Planned<WaypointR2>) -> Self {
-        poses(planned, |waypoint| TimedPose {
-            time: seconds(waypoint.time),
-            position: waypoint.position.coords.into(),
-            yaw: 0.0,
-        })
-    }
 }

@@ -1,0 +1,154 @@
+//! What the node is told about the robots.
+
+use pcr_rmf_mapf::Footprint;
+use serde::Deserialize;
+use std::collections::HashSet;
+use std::fmt;
+
+/// The configuration of the node.
+#[derive(Clone, Debug, PartialEq, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Config {
+    /// The frame of all paths.
+    pub frame: String,
+    /// How long a path is used after it was published \[s\].
+    pub max_age: f64,
+    /// The robots. Where two of them enter the same place at the same time, the one that is named first goes first.
+    pub robots: Vec<RobotConfig>,
+}
+
+/// A robot.
+#[derive(Clone, Debug, PartialEq, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct RobotConfig {
+    /// Its name.
+    pub name: String,
+    /// The topic of its paths, `nav_msgs/Path`.
+    pub path: String,
+    /// Radius of a disc around its position \[m\].
+    pub radius: Option<f64>,
+    /// Or the corners of a convex polygon in its frame, `x` forward and `y` to the left, counter-clockwise \[m\].
+    pub outline: Option<Vec<[f64; 2]>>,
+    /// Margin around either \[m\]: how far the robot may be from its path, and half of what should be clear between two of them.
+    pub margin: f64,
+}
+
+/// What is wrong with a configuration.
+#[derive(Clone, Debug, PartialEq, Eq)]
+#[non_exhaustive]
+pub enum ConfigError {
+    /// It is not JSON of this form.
+    Syntax(String),
+    /// A number is not finite, or negative.
+    Number {
+        /// Where.
+        of: String,
+        /// Its key.
+        key: &'static str,
+    },
+    /// There are not two robots.
+    Robots,
+    /// Something is empty.
+    Empty {
+        /// Where.
+        of: String,
+        /// Its key.
+        key: &'static str,
+    },
+    /// Two robots have the same name or the same topic.
+    Repeated(String),
+    /// A robot has neither a radius nor an outline, or both.
+    Footprint {
+        /// The robot.
+        robot: String,
+    },
+    /// The outline of a robot is none.
+    Outline {
+        /// The robot.
+        robot: String,
+        /// What is wrong.
+        problem: pcr_core::InvalidInput,
+    },
+}
+
+impl Config {
+    /// Reads a configuration, as JSON.
+    ///
+    /// # Errors
+    /// [`ConfigError`].
+    pub fn from_json(text: &str) -> Result<Self, ConfigError> {
+        let config: Self = serde_json::from_str(text).map_err(|error| ConfigError::Syntax(error.to_string()))?;
+        config.check()?;
+        Ok(config)
+    }
+
+    fn check(&self) -> Result<(), ConfigError> {
+        if !(self.max_age.is_finite() && self.max_age > 0.0) {
+            return Err(ConfigError::Number { of: "the configuration".to_owned(), key: "max_age" });
+        }
+        if self.frame.is_empty() {
+            return Err(ConfigError::Empty { of: "the configuration".to_owned(), key: "frame" });
+        }
+        if self.robots.len() < 2 {
+            return Err(ConfigError::Robots);
+        }
+        let mut taken = HashSet::new();
+        for robot in &self.robots {
+            let of = || format!("robot \"{}\"", robot.name);
+            for (key, text) in [("name", &robot.name), ("path", &robot.path)] {
+                if text.is_empty() {
+                    return Err(ConfigError::Empty { of: of(), key });
+                }
+                if !taken.insert((key, text)) {
+                    return Err(ConfigError::Repeated(text.clone()));
+                }
+            }
+            for (key, number) in [("radius", robot.radius.unwrap_or(0.0)), ("margin", robot.margin)] {
+                if !(number.is_finite() && number >= 0.0) {
+                    return Err(ConfigError::Number { of: of(), key });
+                }
+            }
+            robot.check_outline()?;
+        }
+        Ok(())
+    }
+}
+
+impl RobotConfig {
+    fn check_outline(&self) -> Result<(), ConfigError> {
+        let robot = || self.name.clone();
+        if self.radius.is_some() == self.outline.is_some() {
+            return Err(ConfigError::Footprint { robot: robot() });
+        }
+        if let Some(corners) = &self.outline {
+            let corners = corners.iter().map(|&[x, y]| pcr_core::Vector { x, y });
+            let made = pcr_core::Outline::<f64, 16>::polygon(corners, self.margin);
+            made.map_err(|problem| ConfigError::Outline { robot: robot(), problem })?;
+        }
+        Ok(())
+    }
+
+    /// What the robot occupies, without the margin.
+    pub fn footprint(&self) -> Footprint {
+        match &self.outline {
+            Some(corners) => Footprint::Polygon { corners: corners.clone() },
+            None => Footprint::Disc { radius: self.radius.unwrap_or(0.0) },
+        }
+    }
+}
+
+impl fmt::Display for ConfigError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Syntax(problem) => f.write_str(problem),
+            Self::Number { of, key } => write!(f, "{of}: \"{key}\" is not a number in range"),
+            Self::Robots => f.write_str("there are not two robots"),
+            Self::Empty { of, key } => write!(f, "{of}: \"{key}\" is empty"),
+            Self::Repeated(text) => write!(f, "two robots have \"{text}\""),
+            Self::Footprint { robot } => write!(f, "robot \"{robot}\" needs either \"radius\" or \"outline\""),
+            Self::Outline { robot, problem } => write!(f, "robot \"{robot}\": its outline is not valid: {problem}"),
+        }
+    }
+}
+
+impl std::error::Error for ConfigError {}

@@ -1,0 +1,138 @@
+//! The node: topics in and out.
+
+use crate::messages::{MarkerArray, PathMessage, Time};
+use crate::report::{AuthoritiesReport, ConflictsReport};
+use crate::{Answer, Config, Watch};
+use ros2_client::dds::rustdds::mio1::{Events, Interest, Poll, Token};
+use ros2_client::qos::{Durability, History, WhenFull};
+use ros2_client::{
+    Context, ContextOptions, MessageTypeName, Name, Node, NodeName, NodeOptions, Publisher, QosProfile, Subscription,
+};
+use std::error::Error;
+use std::time::{Duration, Instant, SystemTime, UNIX_EPOCH};
+
+/// What is published at least as often as this, also if nothing comes in: paths grow old.
+const PERIOD: Duration = Duration::from_secs(1);
+
+type Failure = Box<dyn Error>;
+
+/// The node with its topics.
+pub struct PcrNode {
+    watch: Watch,
+    // Dropped last: topics belong to it.
+    paths: Vec<Subscription<PathMessage>>,
+    conflicts: Publisher<ConflictsReport>,
+    authorities: Publisher<AuthoritiesReport>,
+    markers: Publisher<MarkerArray>,
+    _node: Node,
+}
+
+fn name(of: &str) -> Result<Name, Failure> {
+    // The topics of a configuration are absolute, with or without the slash.
+    Name::parse(&format!("/{}", of.trim_start_matches('/')))
+        .map_err(|error| format!("topic \"{of}\": {error:?}").into())
+}
+
+/// Paths and what is published are reliable.
+fn reliable(depth: usize) -> QosProfile {
+    QosProfile::publisher_default().reliability_reliable(WhenFull::DEFAULT).history(History::KeepLast { depth })
+}
+
+impl PcrNode {
+    /// Joins a domain (`ROS_DOMAIN_ID`), subscribes to all paths and offers what is published.
+    ///
+    /// # Errors
+    /// Why not.
+    pub fn new(config: Config, domain: u16) -> Result<Self, Failure> {
+        let context = Context::with_options(ContextOptions::new().domain_id(domain))?;
+        let mut node = context.new_node(NodeName::new("/", "pcr")?, NodeOptions::new())?;
+        let mut paths = Vec::with_capacity(config.robots.len());
+        for robot in &config.robots {
+            let topic =
+                node.create_topic(&name(&robot.path)?, MessageTypeName::new("nav_msgs", "Path"), &reliable(10))?;
+            paths.push(node.create_subscription(&topic, None)?);
+        }
+        // Whoever comes late gets the latest.
+        let latest = reliable(1).durability(Durability::TransientLocal);
+        let own = |kind| MessageTypeName::new("pcr_msgs", kind);
+        let conflicts = node.create_topic(&name("pcr/conflicts")?, own("Conflicts"), &latest)?;
+        let authorities = node.create_topic(&name("pcr/authorities")?, own("Authorities"), &latest)?;
+        let markers = MessageTypeName::new("visualization_msgs", "MarkerArray");
+        let markers = node.create_topic(&name("pcr/markers")?, markers, &latest)?;
+        Ok(Self {
+            paths,
+            conflicts: node.create_publisher(&conflicts, None)?,
+            authorities: node.create_publisher(&authorities, None)?,
+            markers: node.create_publisher(&markers, None)?,
+            watch: Watch::new(config),
+            _node: node,
+        })
+    }
+
+    /// Answers until something fails.
+    ///
+    /// # Errors
+    /// What failed.
+    pub fn run(&mut self) -> Result<(), Failure> {
+        let mut poll = Poll::new()?;
+        for (robot, subscription) in self.paths.iter_mut().enumerate() {
+            poll.registry().register(subscription, Token(robot), Interest::READABLE)?;
+        }
+        let mut events = Events::with_capacity(64);
+        let mut told = Vec::new();
+        loop {
+            let due = Instant::now() + PERIOD;
+            loop {
+                let left = due.saturating_duration_since(Instant::now());
+                poll.poll(&mut events, Some(left))?;
+                // Subscriptions are taken to be ready at any event: one that is lost would cost a period.
+                if self.take() || left.is_zero() {
+                    break;
+                }
+            }
+            let answer = self.watch.answer(now()?);
+            log(&answer, &mut told);
+            self.publish(answer)?;
+        }
+    }
+
+    /// Takes all messages that are there. Returns whether there was one.
+    fn take(&mut self) -> bool {
+        let mut any = false;
+        for (robot, subscription) in self.paths.iter().enumerate() {
+            loop {
+                match subscription.take() {
+                    Ok(Some((path, _))) => self.watch.take(robot, &path),
+                    Ok(None) => break,
+                    Err(problem) => self.watch.take_unreadable(robot, format!("{problem:?}")),
+                }
+                any = true;
+            }
+        }
+        any
+    }
+
+    fn publish(&self, answer: Answer) -> Result<(), Failure> {
+        self.conflicts.publish(answer.conflicts).map_err(|problem| format!("conflicts: {problem:?}"))?;
+        self.authorities.publish(answer.authorities).map_err(|problem| format!("authorities: {problem:?}"))?;
+        self.markers.publish(answer.markers).map_err(|problem| format!("markers: {problem:?}"))?;
+        Ok(())
+    }
+}
+
+/// The time of the system's clock.
+fn now() -> Result<Time, Failure> {
+    let since = SystemTime::now().duration_since(UNIX_EPOCH)?;
+    Ok(Time { sec: i32::try_from(since.as_secs())?, nanosec: since.subsec_nanos() })
+}
+
+/// Tells refusals when they begin.
+fn log(answer: &Answer, told: &mut Vec<(String, String)>) {
+    let refusals = answer.conflicts.refusals.iter();
+    let refused: Vec<(String, String)> =
+        refusals.map(|refusal| (refusal.robot.clone(), refusal.reason.clone())).collect();
+    for line in refused.iter().filter(|line| !told.contains(line)) {
+        eprintln!("pcr-ros2: {}: {}", line.0, line.1);
+    }
+    *told = refused;
+}

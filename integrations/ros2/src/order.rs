@@ -1,0 +1,103 @@
+//! Who goes first, and how far everybody may go then.
+//!
+//! Two robots that keep apart at the times of their paths pass in the order that these have. Of two that do not, the one goes first that stands
+//! where they would meet; then the one that gets there earlier; then the one that is configured first. Nobody is taken to be further than at the
+//! beginning of his path, so that an authority holds wherever the others are.
+
+use pcr_core::{
+    AdmissionError, CheckState, CheckTolerances, EcmEntry, Motion, MovementAuthority, PassingState, Piece,
+    PrecedenceTable, Progress, RegionPrecedence, RegionRef,
+};
+
+/// How far a robot may go.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) enum Place {
+    End,
+    /// Up to this length of its path, before a place that another robot passes first.
+    Before {
+        length: f64,
+        other: usize,
+    },
+    /// It stands where another robot passes first.
+    Nowhere {
+        other: usize,
+    },
+}
+
+/// The places of all robots.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) struct Order {
+    pub(crate) places: Vec<Place>,
+    /// Robots that would wait for ever: one that waits, and for whom.
+    pub(crate) stuck: Vec<usize>,
+}
+
+type Table = PrecedenceTable<f64, Vec<EcmEntry>, Vec<Piece<f64>>, Vec<RegionPrecedence<f64>>>;
+
+/// A gain that does not count as one \[m\].
+const GAIN: f64 = 1e-3;
+
+/// The order of a fleet, or why there is none.
+pub(crate) fn of(fleet: &[Motion<'_, f64>]) -> Result<Order, String> {
+    let mut table = Table::grown(fleet).map_err(|full| full.to_string())?;
+    for second in 0..fleet.len() {
+        for first in 0..second {
+            decide(&mut table, fleet, [first, second]).map_err(|problem| problem.to_string())?;
+        }
+    }
+    let progress = vec![Progress::at_rest(0.0); fleet.len()];
+    let mut places = Vec::with_capacity(fleet.len());
+    for agent in 0..fleet.len() {
+        let (authority, other) = table.wait(fleet, agent, &progress).map_err(|problem| problem.to_string())?;
+        let other = other.ok_or("a robot waits for nobody");
+        places.push(match authority {
+            MovementAuthority::Free => Place::End,
+            MovementAuthority::At(length) => Place::Before { length, other: other? },
+            MovementAuthority::Inside => Place::Nowhere { other: other? },
+        });
+    }
+    let mut reaches = vec![CheckState::EMPTY; fleet.len()];
+    let tolerances = CheckTolerances { width: 0.0, gain: GAIN };
+    let stuck = match table.check(fleet, &progress, tolerances, &mut reaches) {
+        Ok(()) => Vec::new(),
+        Err(AdmissionError::Stuck { agent, by, .. } | AdmissionError::Late { agent, by, .. }) => vec![agent, by],
+        Err(problem) => return Err(problem.to_string()),
+    };
+    Ok(Order { places, stuck })
+}
+
+/// Decides the order of two agents in all of their regions.
+fn decide(table: &mut Table, fleet: &[Motion<'_, f64>], pair: [usize; 2]) -> Result<(), AdmissionError> {
+    let [first, second] = pair;
+    let places: Vec<usize> =
+        table.decisions().filter(|decision| decision.agents == pair).map(|decision| decision.place).collect();
+    if places.is_empty() {
+        return Ok(());
+    }
+    let two = [fleet[first], fleet[second]];
+    let mut planned = Table::grown(&two)?;
+    let states: Vec<PassingState> = match planned.as_planned(&two) {
+        Ok(()) => planned.decisions().map(|decision| decision.pass).collect(),
+        Err(AdmissionError::Meeting(_)) => {
+            table.ecm().pair(fleet, first, second)?.map(|region| earlier(&region)).collect()
+        }
+        Err(problem) => return Err(problem),
+    };
+    for (&place, &state) in places.iter().zip(&states) {
+        table.decide_at(fleet, place, first, state, 0.0)?;
+    }
+    Ok(())
+}
+
+/// Whether the ego of a region goes first, of two robots that meet.
+fn earlier(region: &RegionRef<'_, f64>) -> PassingState {
+    let swapped = region.clone().swapped();
+    let stands = [region, &swapped].map(|region| region.hold(0.0, 0.0) == MovementAuthority::Inside);
+    let entry = |region: &RegionRef<'_, f64>| region.ego_motion().time_in(region.length()).lo;
+    let is_first = match stands {
+        [true, false] => true,
+        [false, true] => false,
+        _ => entry(region) <= entry(&swapped),
+    };
+    if is_first { PassingState::First } else { PassingState::Second }
+}
