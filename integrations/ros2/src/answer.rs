@@ -47,14 +47,15 @@ fn spatial(pose: TimedPose) -> SpatialPose {
 }
 
 impl Answer {
-    pub(crate) fn new(known: &[Known<'_>], header: Header) -> Self {
+    /// `others` are refusals of robots that are not configured: whoever they are, they may be anywhere.
+    pub(crate) fn new(known: &[Known<'_>], others: &[Refusal], header: Header) -> Self {
         let mut answer = Self::default();
         for (b, second) in known.iter().enumerate() {
             for first in &known[..b] {
                 answer.pair([first, second], header.stamp);
             }
         }
-        answer.authorities = authorities(known, &header);
+        answer.authorities = authorities(known, others, &header);
         answer.markers = markers::of(known, &answer.conflicts.conflicts, &header);
         answer.authorities.header = header.clone();
         answer.conflicts.header = header;
@@ -120,15 +121,16 @@ fn conflicts(pair: [&Known<'_>; 2], now: Time) -> Result<Vec<ConflictReport>, St
         .collect()
 }
 
-fn authorities(known: &[Known<'_>], header: &Header) -> AuthoritiesReport {
+fn authorities(known: &[Known<'_>], others: &[Refusal], header: &Header) -> AuthoritiesReport {
     let all: Vec<&Known<'_>> = known.iter().collect();
     let named = |agent: usize| known.get(agent).map(|known| known.robot.name.clone()).unwrap_or_default();
-    let found = motions(&all).and_then(|found| {
+    let strangers = others.iter().map(Refusal::to_string).collect::<Vec<_>>().join("; ");
+    let found = if strangers.is_empty() { motions(&all) } else { Err(strangers) };
+    let found = found.and_then(|found| {
         let fleet: Vec<Motion<'_, f64>> = found.iter().map(|(_, motion)| *motion).collect();
         let Order { places, stuck } = order::of(&fleet)?;
         let each = (found.iter().zip(&places).enumerate()).map(|(agent, ((robot, motion), place))| {
-            authority(robot, motion, place, header.stamp, &named)
-                .map(|of| AuthorityReport { robot: named(agent), ..of })
+            authority(robot, motion, place, header.stamp, named).map(|of| AuthorityReport { robot: named(agent), ..of })
         });
         Ok((each.collect::<Result<Vec<_>, String>>()?, stuck))
     });

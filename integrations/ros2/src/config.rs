@@ -13,6 +13,8 @@ pub struct Config {
     pub frame: String,
     /// How long a path is used after it was published \[s\].
     pub max_age: f64,
+    /// The topic of the states of Open-RMF's fleets, `rmf_fleet_msgs/FleetState`, if a robot is in one.
+    pub fleet_states: Option<String>,
     /// The robots. Where two of them enter the same place at the same time, the one that is named first goes first.
     pub robots: Vec<RobotConfig>,
 }
@@ -24,13 +26,29 @@ pub struct RobotConfig {
     /// Its name.
     pub name: String,
     /// The topic of its paths, `nav_msgs/Path`.
-    pub path: String,
+    pub path: Option<String>,
+    /// Or its fleet of Open-RMF; its name is that which it has there.
+    pub fleet: Option<String>,
+    /// The level of a robot in such a fleet: that of the frame.
+    pub level: Option<String>,
+    /// How fast it drives, if its planner gives no times: those of its messages are not used then.
+    pub pace: Option<Pace>,
     /// Radius of a disc around its position \[m\].
     pub radius: Option<f64>,
     /// Or the corners of a convex polygon in its frame, `x` forward and `y` to the left, counter-clockwise \[m\].
     pub outline: Option<Vec<[f64; 2]>>,
     /// Margin around either \[m\]: how far the robot may be from its path, and half of what should be clear between two of them.
     pub margin: f64,
+}
+
+/// How fast a robot drives whose planner gives no times.
+#[derive(Clone, Copy, Debug, PartialEq, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Pace {
+    /// Speed \[m/s\].
+    pub speed: f64,
+    /// Rate of turn \[rad/s\].
+    pub turn: f64,
 }
 
 /// What is wrong with a configuration.
@@ -57,6 +75,11 @@ pub enum ConfigError {
     },
     /// Two robots have the same name or the same topic.
     Repeated(String),
+    /// A robot has neither a path nor a fleet, or both; or a fleet, but no level, or a pace; or there is no topic of fleet states.
+    Source {
+        /// The robot.
+        robot: String,
+    },
     /// A robot has neither a radius nor an outline, or both.
     Footprint {
         /// The robot.
@@ -92,17 +115,22 @@ impl Config {
         if self.robots.len() < 2 {
             return Err(ConfigError::Robots);
         }
+        if self.fleet_states.as_deref() == Some("") {
+            return Err(ConfigError::Empty { of: "the configuration".to_owned(), key: "fleet_states" });
+        }
         let mut taken = HashSet::new();
         for robot in &self.robots {
             let of = || format!("robot \"{}\"", robot.name);
-            for (key, text) in [("name", &robot.name), ("path", &robot.path)] {
+            let texts = [("name", Some(&robot.name)), ("path", robot.path.as_ref()), ("fleet", robot.fleet.as_ref())];
+            for (key, text) in texts.into_iter().filter_map(|(key, text)| Some((key, text?))) {
                 if text.is_empty() {
                     return Err(ConfigError::Empty { of: of(), key });
                 }
-                if !taken.insert((key, text)) {
+                if key != "fleet" && !taken.insert((key, text)) {
                     return Err(ConfigError::Repeated(text.clone()));
                 }
             }
+            robot.check_source(self.fleet_states.is_some())?;
             for (key, number) in [("radius", robot.radius.unwrap_or(0.0)), ("margin", robot.margin)] {
                 if !(number.is_finite() && number >= 0.0) {
                     return Err(ConfigError::Number { of: of(), key });
@@ -115,6 +143,24 @@ impl Config {
 }
 
 impl RobotConfig {
+    fn check_source(&self, has_states: bool) -> Result<(), ConfigError> {
+        let is_told = match (&self.path, &self.fleet) {
+            (Some(_), None) => self.level.is_none(),
+            (None, Some(_)) => self.level.is_some() && self.pace.is_none() && has_states,
+            _ => false,
+        };
+        if !is_told {
+            return Err(ConfigError::Source { robot: self.name.clone() });
+        }
+        let paces = self.pace.iter().flat_map(|pace| [("speed", pace.speed), ("turn", pace.turn)]);
+        for (key, number) in paces {
+            if !(number.is_finite() && number > 0.0) {
+                return Err(ConfigError::Number { of: format!("robot \"{}\"", self.name), key });
+            }
+        }
+        Ok(())
+    }
+
     fn check_outline(&self) -> Result<(), ConfigError> {
         let robot = || self.name.clone();
         if self.radius.is_some() == self.outline.is_some() {
@@ -145,6 +191,10 @@ impl fmt::Display for ConfigError {
             Self::Robots => f.write_str("there are not two robots"),
             Self::Empty { of, key } => write!(f, "{of}: \"{key}\" is empty"),
             Self::Repeated(text) => write!(f, "two robots have \"{text}\""),
+            Self::Source { robot } => write!(
+                f,
+                "robot \"{robot}\" needs either \"path\", or \"fleet\" and \"level\" (without \"pace\"), and then \"fleet_states\" beside the robots"
+            ),
             Self::Footprint { robot } => write!(f, "robot \"{robot}\" needs either \"radius\" or \"outline\""),
             Self::Outline { robot, problem } => write!(f, "robot \"{robot}\": its outline is not valid: {problem}"),
         }

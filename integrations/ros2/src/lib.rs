@@ -13,7 +13,7 @@ mod robot_motion;
 mod watch;
 
 pub use answer::Answer;
-pub use config::{Config, ConfigError, RobotConfig};
+pub use config::{Config, ConfigError, Pace, RobotConfig};
 pub use planned_path::{PlannedPath, PlannedPose};
 pub use refusal::Refusal;
 pub use watch::Watch;

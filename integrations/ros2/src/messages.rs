@@ -29,7 +29,7 @@ impl Time {
     pub fn later(self, seconds: f64) -> Option<Self> {
         let by = (seconds * SECOND as f64).round();
         // Beyond that the message cannot tell it either; the conversion would round silently.
-        if !(by.abs() < 9e18) {
+        if by.is_nan() || by.abs() > 9e18 {
             return None;
         }
         let at = self.nanoseconds().checked_add(by as i64)?;
@@ -192,4 +192,51 @@ impl Marker {
 pub struct MarkerArray {
     /// The markers.
     pub markers: Vec<Marker>,
+}
+
+/// `rmf_fleet_msgs/msg/Location`.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[allow(missing_docs)]
+pub struct FleetLocation {
+    pub t: Time,
+    pub x: f32,
+    pub y: f32,
+    pub yaw: f32,
+    pub obey_approach_speed_limit: bool,
+    pub approach_speed_limit: f32,
+    pub level_name: String,
+    pub index: u64,
+}
+
+/// `rmf_fleet_msgs/msg/RobotMode`.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[allow(missing_docs)]
+pub struct FleetRobotMode {
+    pub mode: u32,
+    pub mode_request_id: u64,
+    pub performing_action: String,
+}
+
+/// `rmf_fleet_msgs/msg/RobotState`.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[allow(missing_docs)]
+pub struct FleetRobotState {
+    pub name: String,
+    pub model: String,
+    pub task_id: String,
+    pub seq: u64,
+    pub mode: FleetRobotMode,
+    pub battery_percent: f32,
+    /// Where it is, and when.
+    pub location: FleetLocation,
+    /// Where it will be.
+    pub path: Vec<FleetLocation>,
+}
+
+/// `rmf_fleet_msgs/msg/FleetState`.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[allow(missing_docs)]
+pub struct FleetState {
+    pub name: String,
+    pub robots: Vec<FleetRobotState>,
 }

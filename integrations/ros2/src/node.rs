@@ -1,6 +1,6 @@
 //! The node: topics in and out.
 
-use crate::messages::{MarkerArray, PathMessage, Time};
+use crate::messages::{FleetState, MarkerArray, PathMessage, Time};
 use crate::report::{AuthoritiesReport, ConflictsReport};
 use crate::{Answer, Config, Watch};
 use ros2_client::dds::rustdds::mio1::{Events, Interest, Poll, Token};
@@ -20,7 +20,8 @@ type Failure = Box<dyn Error>;
 pub struct PcrNode {
     watch: Watch,
     // Dropped last: topics belong to it.
-    paths: Vec<Subscription<PathMessage>>,
+    paths: Vec<(usize, Subscription<PathMessage>)>,
+    fleets: Option<Subscription<FleetState>>,
     conflicts: Publisher<ConflictsReport>,
     authorities: Publisher<AuthoritiesReport>,
     markers: Publisher<MarkerArray>,
@@ -47,11 +48,20 @@ impl PcrNode {
         let context = Context::with_options(ContextOptions::new().domain_id(domain))?;
         let mut node = context.new_node(NodeName::new("/", "pcr")?, NodeOptions::new())?;
         let mut paths = Vec::with_capacity(config.robots.len());
-        for robot in &config.robots {
-            let topic =
-                node.create_topic(&name(&robot.path)?, MessageTypeName::new("nav_msgs", "Path"), &reliable(10))?;
-            paths.push(node.create_subscription(&topic, None)?);
+        let path = MessageTypeName::new("nav_msgs", "Path");
+        let topics = config.robots.iter().enumerate().filter_map(|(robot, found)| Some((robot, found.path.as_ref()?)));
+        for (robot, topic) in topics {
+            let topic = node.create_topic(&name(topic)?, path.clone(), &reliable(10))?;
+            paths.push((robot, node.create_subscription(&topic, None)?));
         }
+        let fleets = match &config.fleet_states {
+            Some(topic) => {
+                let kind = MessageTypeName::new("rmf_fleet_msgs", "FleetState");
+                let topic = node.create_topic(&name(topic)?, kind, &reliable(100))?;
+                Some(node.create_subscription(&topic, None)?)
+            }
+            None => None,
+        };
         // Whoever comes late gets the latest.
         let latest = reliable(1).durability(Durability::TransientLocal);
         let own = |kind| MessageTypeName::new("pcr_msgs", kind);
@@ -61,6 +71,7 @@ impl PcrNode {
         let markers = node.create_topic(&name("pcr/markers")?, markers, &latest)?;
         Ok(Self {
             paths,
+            fleets,
             conflicts: node.create_publisher(&conflicts, None)?,
             authorities: node.create_publisher(&authorities, None)?,
             markers: node.create_publisher(&markers, None)?,
@@ -75,8 +86,12 @@ impl PcrNode {
     /// What failed.
     pub fn run(&mut self) -> Result<(), Failure> {
         let mut poll = Poll::new()?;
-        for (robot, subscription) in self.paths.iter_mut().enumerate() {
-            poll.registry().register(subscription, Token(robot), Interest::READABLE)?;
+        // Whichever is ready, all are read.
+        for (_, subscription) in &mut self.paths {
+            poll.registry().register(subscription, Token(0), Interest::READABLE)?;
+        }
+        if let Some(subscription) = &mut self.fleets {
+            poll.registry().register(subscription, Token(0), Interest::READABLE)?;
         }
         let mut events = Events::with_capacity(64);
         let mut told = Vec::new();
@@ -85,7 +100,6 @@ impl PcrNode {
             loop {
                 let left = due.saturating_duration_since(Instant::now());
                 poll.poll(&mut events, Some(left))?;
-                // Subscriptions are taken to be ready at any event: one that is lost would cost a period.
                 if self.take() || left.is_zero() {
                     break;
                 }
@@ -99,15 +113,23 @@ impl PcrNode {
     /// Takes all messages that are there. Returns whether there was one.
     fn take(&mut self) -> bool {
         let mut any = false;
-        for (robot, subscription) in self.paths.iter().enumerate() {
+        for (robot, subscription) in &self.paths {
             loop {
                 match subscription.take() {
-                    Ok(Some((path, _))) => self.watch.take(robot, &path),
+                    Ok(Some((path, _))) => self.watch.take(*robot, &path),
                     Ok(None) => break,
-                    Err(problem) => self.watch.take_unreadable(robot, format!("{problem:?}")),
+                    Err(problem) => self.watch.take_unreadable(*robot, format!("{problem:?}")),
                 }
                 any = true;
             }
+        }
+        while let Some(subscription) = &self.fleets {
+            match subscription.take() {
+                Ok(Some((state, _))) => self.watch.take_fleet(&state),
+                Ok(None) => break,
+                Err(problem) => self.watch.take_unreadable_fleet(&format!("{problem:?}")),
+            }
+            any = true;
         }
         any
     }

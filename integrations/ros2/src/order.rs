@@ -1,8 +1,8 @@
 //! Who goes first, and how far everybody may go then.
 //!
 //! Two robots that keep apart at the times of their paths pass in the order that these have. Of two that do not, the one goes first that stands
-//! where they would meet; then the one that gets there earlier; then the one that is configured first. Nobody is taken to be further than at the
-//! beginning of his path, so that an authority holds wherever the others are.
+//! where they would meet; then the one that gets there earlier; then the one that is configured first. If each of them stands where the other one
+//! passes, neither may go. Nobody is taken to be further than at the beginning of his path, so that an authority holds wherever the others are.
 
 use pcr_core::{
     AdmissionError, CheckState, CheckTolerances, EcmEntry, Motion, MovementAuthority, PassingState, Piece,
@@ -28,7 +28,7 @@ pub(crate) enum Place {
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Order {
     pub(crate) places: Vec<Place>,
-    /// Robots that would wait for ever: one that waits, and for whom.
+    /// If some would wait for ever: one that waits, and for whom.
     pub(crate) stuck: Vec<usize>,
 }
 
@@ -83,21 +83,22 @@ fn decide(table: &mut Table, fleet: &[Motion<'_, f64>], pair: [usize; 2]) -> Res
         }
         Err(problem) => return Err(problem),
     };
-    for (&place, &state) in places.iter().zip(&states) {
+    for (&place, &state) in places.iter().zip(&states).filter(|(_, state)| **state != PassingState::Undecided) {
         table.decide_at(fleet, place, first, state, 0.0)?;
     }
     Ok(())
 }
 
-/// Whether the ego of a region goes first, of two robots that meet.
+/// Whether the ego of a region goes first, of two robots that meet. Undecided, neither may go there.
 fn earlier(region: &RegionRef<'_, f64>) -> PassingState {
     let swapped = region.clone().swapped();
     let stands = [region, &swapped].map(|region| region.hold(0.0, 0.0) == MovementAuthority::Inside);
     let entry = |region: &RegionRef<'_, f64>| region.ego_motion().time_in(region.length()).lo;
-    let is_first = match stands {
-        [true, false] => true,
-        [false, true] => false,
-        _ => entry(region) <= entry(&swapped),
-    };
-    if is_first { PassingState::First } else { PassingState::Second }
+    match stands {
+        [true, true] => PassingState::Undecided,
+        [true, false] => PassingState::First,
+        [false, true] => PassingState::Second,
+        [false, false] if entry(region) <= entry(&swapped) => PassingState::First,
+        [false, false] => PassingState::Second,
+    }
 }

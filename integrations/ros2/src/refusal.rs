@@ -28,11 +28,13 @@ pub enum Refusal {
         /// The pose.
         pose: usize,
     },
-    /// A pose is not later than the one before it, or its nanoseconds are not below 1e9.
+    /// A pose is not later than the one before it.
     Time {
         /// The pose.
         pose: usize,
     },
+    /// The nanoseconds of a time are not below 1e9.
+    Nanoseconds,
     /// A robot with an outline is turned by half a turn on the way to a pose, and it is not told to which side.
     HalfTurn {
         /// The pose.
@@ -56,6 +58,8 @@ pub enum Refusal {
     Unreadable(String),
     /// A fleet has a robot that is not configured.
     UnknownRobot {
+        /// The fleet.
+        fleet: String,
         /// Its name.
         name: String,
     },
@@ -73,7 +77,10 @@ impl fmt::Display for Refusal {
             Self::Frame { given, expected } => write!(f, "the path is in frame \"{given}\", not \"{expected}\""),
             Self::NotFinite { pose } => write!(f, "pose {pose}: a number is not finite"),
             Self::Rotation { pose } => write!(f, "pose {pose}: its orientation is not a rotation about z"),
-            Self::Time { pose } => write!(f, "pose {pose}: it is not later than the one before"),
+            Self::Time { pose } => {
+                write!(f, "pose {pose}: it is not later than the one before")
+            }
+            Self::Nanoseconds => f.write_str("a time has nanoseconds that are not below 1e9"),
             Self::HalfTurn { pose } => {
                 write!(f, "pose {pose}: it is not told to which side the robot makes half a turn")
             }
@@ -82,7 +89,7 @@ impl fmt::Display for Refusal {
             Self::Range(problem) => problem.fmt(f),
             Self::Motion(problem) => problem.fmt(f),
             Self::Unreadable(problem) => write!(f, "the message cannot be read: {problem}"),
-            Self::UnknownRobot { name } => write!(f, "robot \"{name}\" is not configured"),
+            Self::UnknownRobot { fleet, name } => write!(f, "robot \"{name}\" of fleet \"{fleet}\" is not configured"),
             Self::Missing => f.write_str("the state of its fleet does not have the robot"),
             Self::Repeated => f.write_str("the state of its fleet has the robot more than once"),
         }

@@ -5,17 +5,18 @@
 //! is larger by what the true heading can move its corners from there.
 
 use crate::messages::Time;
-use crate::planned_path::{PlannedPath, PlannedPose};
+use crate::planned_path::{PlannedPath, PlannedPose, wrapped};
 use crate::refusal::Refusal;
 use pcr_core::{Interval, Motion};
 use pcr_rmf_mapf::{Error, Footprint, OwnedMotion, TimedPose, Trajectory};
-use std::f64::consts::{PI, TAU};
+use std::f64::consts::PI;
 
 /// An outline that goes turns by no more in a part \[rad\].
 const PART: f64 = 0.05;
-/// Time that an outline takes to turn from the heading of one part to that of the next \[s\], and how much of a part that is at most.
-const TURNING: f64 = 1e-4;
-const TURNING_SHARE: f64 = 1e-3;
+/// An outline turns from the heading of one part to that of the next in this share of the time of a part, or in a shorter time, in which it goes no
+/// further than this \[m\]. Shorter times would be accelerations out of range.
+const TURNING_SHARE: f64 = 0.02;
+const TURNING_LAG: f64 = 1e-3;
 /// Distances \[m\] and angles \[rad\] that are rounding.
 const ROUNDING: f64 = 1e-6;
 
@@ -88,11 +89,6 @@ fn length(from: TimedPose, to: TimedPose) -> f64 {
     (to.position[0] - from.position[0]).hypot(to.position[1] - from.position[1])
 }
 
-/// An angle within half a turn of 0 \[rad\].
-fn wrapped(angle: f64) -> f64 {
-    (angle + PI).rem_euclid(TAU) - PI
-}
-
 /// Poses between which an outline goes or turns, but not both; and by how much it is larger \[m\]. Its corners are within `reach`.
 fn divided(poses: &[TimedPose], reach: f64) -> Result<(Vec<TimedPose>, f64), Refusal> {
     let mut made: Vec<TimedPose> = poses.first().copied().into_iter().collect();
@@ -109,7 +105,9 @@ fn divided(poses: &[TimedPose], reach: f64) -> Result<(Vec<TimedPose>, f64), Ref
         let both = distance > 0.0 && by != 0.0;
         let parts = if both { (by.abs() / PART).ceil().max(1.0) } else { 1.0 };
         let duration = (to.time - from.time) / parts;
-        let turning = TURNING.min(duration * TURNING_SHARE);
+        // It stands while it turns, and then catches up.
+        let lag = (distance / parts * TURNING_SHARE).min(TURNING_LAG);
+        let turning = duration * TURNING_SHARE.min(TURNING_LAG * parts / distance);
         let at = |share: f64, yaw: f64| TimedPose {
             time: from.time + share * (to.time - from.time),
             position: [0, 1].map(|axis| from.position[axis] + share * (to.position[axis] - from.position[axis])),
@@ -121,8 +119,7 @@ fn divided(poses: &[TimedPose], reach: f64) -> Result<(Vec<TimedPose>, f64), Ref
             if begin != heading {
                 let before = at(f64::from(part) / parts, begin);
                 made.push(TimedPose { time: before.time + turning, ..before });
-                // It stands while it turns, and then catches up.
-                swell = swell.max(distance / parts * (turning / duration) + ROUNDING);
+                swell = swell.max(lag + ROUNDING);
             }
             heading = if both { middle } else { to.yaw };
             let is_last = f64::from(part) + 1.0 == parts;
@@ -134,7 +131,6 @@ fn divided(poses: &[TimedPose], reach: f64) -> Result<(Vec<TimedPose>, f64), Ref
         }
         if both {
             let most = by.abs() / parts * (0.5 + TURNING_SHARE);
-            let lag = distance / parts * (turning / duration);
             swell = swell.max(2.0 * reach * (most / 2.0).sin() + lag + ROUNDING);
         }
     }

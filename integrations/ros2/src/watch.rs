@@ -2,10 +2,11 @@
 
 use crate::answer::{Answer, Known};
 use crate::config::Config;
-use crate::messages::{Header, PathMessage, Time};
+use crate::messages::{FleetRobotState, FleetState, Header, PathMessage, Time};
 use crate::planned_path::PlannedPath;
 use crate::refusal::Refusal;
 use crate::report::RefusalReport;
+use std::collections::BTreeMap;
 
 /// The latest paths of all robots.
 #[derive(Clone, Debug)]
@@ -13,13 +14,17 @@ pub struct Watch {
     config: Config,
     /// Of each robot what its last message was.
     paths: Vec<Result<PlannedPath, Refusal>>,
+    /// Of each fleet the robots that are not configured.
+    strangers: BTreeMap<String, Vec<String>>,
+    /// Why the last fleet state could not be read.
+    unreadable: Option<String>,
 }
 
 impl Watch {
     /// No path has come yet.
     pub fn new(config: Config) -> Self {
         let paths = config.robots.iter().map(|_| Err(Refusal::NoPath)).collect();
-        Self { config, paths }
+        Self { config, paths, strangers: BTreeMap::new(), unreadable: None }
     }
 
     /// The configuration.
@@ -29,7 +34,40 @@ impl Watch {
 
     /// Takes a path of the robot with this index. If it is refused, the robot has none: the one before it does not hold any more.
     pub fn take(&mut self, robot: usize, message: &PathMessage) {
-        self.set(robot, PlannedPath::read(message, &self.config.frame));
+        let pace = self.config.robots.get(robot).and_then(|robot| robot.pace);
+        self.set(robot, PlannedPath::read(message, &self.config.frame, pace));
+    }
+
+    /// Takes the state of a fleet. Robots of it that are configured and not in there have no path any more.
+    pub fn take_fleet(&mut self, state: &FleetState) {
+        self.unreadable = None;
+        for (robot, place) in self.config.robots.iter().zip(&mut self.paths) {
+            let (Some(fleet), Some(level)) = (&robot.fleet, &robot.level) else { continue };
+            if *fleet == state.name {
+                let mut found = state.robots.iter().filter(|found| found.name == robot.name);
+                *place = match [found.next(), found.next()] {
+                    [Some(found), None] => PlannedPath::read_fleet(found, level),
+                    [None, _] => Err(Refusal::Missing),
+                    _ => Err(Refusal::Repeated),
+                };
+            }
+        }
+        let is_known = |found: &&FleetRobotState| {
+            let mut robots = self.config.robots.iter();
+            robots.any(|robot| robot.fleet.as_deref() == Some(&state.name) && robot.name == found.name)
+        };
+        let strangers = state.robots.iter().filter(|found| !is_known(found)).map(|found| found.name.clone());
+        self.strangers.insert(state.name.clone(), strangers.collect());
+    }
+
+    /// Takes a fleet state that could not be read: whose it was is not known.
+    pub fn take_unreadable_fleet(&mut self, problem: &str) {
+        for (robot, place) in self.config.robots.iter().zip(&mut self.paths) {
+            if robot.fleet.is_some() {
+                *place = Err(Refusal::Unreadable(problem.to_owned()));
+            }
+        }
+        self.unreadable = Some(problem.to_owned());
     }
 
     /// Takes a message that could not be read.
@@ -51,13 +89,26 @@ impl Watch {
                 Known::new(robot, path.and_then(|path| path.check_age(now, self.config.max_age).map(|()| path)), now)
             })
             .collect();
-        let refusals = known.iter().filter_map(|known| {
-            let reason = known.motion.as_ref().err()?.to_string();
-            Some(RefusalReport { topic: known.robot.path.clone(), robot: known.robot.name.clone(), reason })
+        let states = self.config.fleet_states.clone().unwrap_or_default();
+        let unreadable = self.unreadable.iter().map(|problem| Refusal::Unreadable(problem.clone()));
+        let strangers = self.strangers.iter().flat_map(|(fleet, names)| {
+            names.iter().map(|name| Refusal::UnknownRobot { fleet: fleet.clone(), name: name.clone() })
         });
+        let strangers: Vec<Refusal> = strangers.chain(unreadable).collect();
+        let refused = known.iter().filter_map(|known| {
+            let reason = known.motion.as_ref().err()?.to_string();
+            let topic = known.robot.path.as_ref().unwrap_or(&states).clone();
+            Some(RefusalReport { topic, robot: known.robot.name.clone(), reason })
+        });
+        let others = strangers.iter().map(|refusal| RefusalReport {
+            topic: states.clone(),
+            robot: String::new(),
+            reason: refusal.to_string(),
+        });
+        let refusals = refused.chain(others).collect();
         let header = Header { stamp: now, frame_id: self.config.frame.clone() };
-        let mut answer = Answer::new(&known, header);
-        answer.conflicts.refusals = refusals.collect();
+        let mut answer = Answer::new(&known, &strangers, header);
+        answer.conflicts.refusals = refusals;
         answer
     }
 }
