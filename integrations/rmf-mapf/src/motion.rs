@@ -36,6 +36,12 @@ enum Step {
     Turns {
         by: f64,
     },
+    /// It does both.
+    Bends {
+        length: f64,
+        direction: f64,
+        by: f64,
+    },
 }
 
 impl OwnedMotion {
@@ -52,8 +58,8 @@ impl OwnedMotion {
             Footprint::Polygon { corners } => {
                 let reach = corners.iter().map(|[x, y]| x.hypot(*y)).fold(0.0, f64::max);
                 let corners = corners.iter().map(|&[x, y]| Vector { x, y });
-                // By its place and by its heading.
-                let rounding = ROUNDING * (1.0 + reach) + trajectory.margin;
+                // By its place and by its heading. What it may deviate: by a place that is not gone to, a heading that is not turned to, and an arc.
+                let rounding = ROUNDING * (1.0 + reach) + 3.0 * trajectory.deviation + trajectory.margin;
                 (Some(Outline::polygon(corners, rounding).map_err(invalid)?), Some(reach))
             }
         };
@@ -73,11 +79,16 @@ impl OwnedMotion {
             if reach.is_some() && is_half_turn(from, to) {
                 return Err(Error::HalfTurn { agent, waypoint: k + 1 });
             }
-            match step(path.end(), path.heading, to, reach.is_some()) {
-                None => return Err(Error::TurnsOnTheWay { agent, waypoint: k + 1 }),
-                Some(Step::Waits) => {}
-                Some(Step::Moves { length, direction }) => path.line(length, direction).map_err(invalid)?,
-                Some(Step::Turns { by }) => path.pivot(reach.unwrap_or(1.0).max(0.1), by).map_err(invalid)?,
+            match step(&path, from, to, reach.map(|reach| Least::new(trajectory.deviation, reach))) {
+                Step::Waits => {}
+                Step::Moves { length, direction } => path.line(length, direction).map_err(invalid)?,
+                Step::Turns { by } => path.pivot(reach.unwrap_or(1.0).max(0.1), by).map_err(invalid)?,
+                Step::Bends { .. } if trajectory.deviation <= 0.0 => {
+                    return Err(Error::TurnsOnTheWay { agent, waypoint: k + 1 });
+                }
+                Step::Bends { length, direction, by } => {
+                    path.arcs(length, direction, by, trajectory.deviation).map_err(invalid)?;
+                }
             }
             let length = path.length();
             sections.push((length - lengths.last().copied().unwrap_or_default(), duration));
@@ -110,16 +121,37 @@ impl OwnedMotion {
     }
 }
 
-/// What an agent does from the end of its path, where it has this heading, to the next waypoint. `None` if an outline moves and turns.
-fn step(end: Point<f64>, heading: f64, to: TimedPose, is_outline: bool) -> Option<Step> {
+/// What is left out if it is less: a length \[m\] and a turn \[rad\].
+#[derive(Clone, Copy)]
+struct Least {
+    length: f64,
+    turn: f64,
+}
+
+impl Least {
+    /// What moves no point of an outline by more than a deviation \[m\].
+    fn new(deviation: f64, reach: f64) -> Self {
+        Self { length: ROUNDING.max(deviation), turn: ROUNDING.max(deviation / reach.max(0.1)) }
+    }
+}
+
+/// What an agent does from the end of its path, which is at `from` but for what was left out, to the next waypoint. A disc does not turn. Of an
+/// outline that moves or turns by more than rounding, the other one is left out if it is less than `outline` says.
+fn step(path: &PathBuilder, from: TimedPose, to: TimedPose, outline: Option<Least>) -> Step {
+    let end = path.end();
     let [x, y] = [to.position[0] - end.x, to.position[1] - end.y];
     let (length, direction) = (x.hypot(y), y.atan2(x));
-    let by = if is_outline { wrapped(to.yaw - heading) } else { 0.0 };
-    match (length > ROUNDING, by.abs() > ROUNDING) {
-        (true, true) => None,
-        (true, false) => Some(Step::Moves { length, direction }),
-        (false, true) => Some(Step::Turns { by }),
-        (false, false) => Some(Step::Waits),
+    // To the side to which it turns between the waypoints, whatever it has to make good.
+    let by = outline.map_or(0.0, |_| wrapped(to.yaw - from.yaw) + wrapped(from.yaw - path.heading));
+    let (moves, turns) = (length > ROUNDING, by.abs() > ROUNDING);
+    let is_less = |least: Least| (length <= least.length, by.abs() <= least.turn);
+    match (moves, turns, outline.map(is_less)) {
+        (false, false, _) => Step::Waits,
+        (true, false, _) => Step::Moves { length, direction },
+        (false, true, _) => Step::Turns { by },
+        (true, true, Some((_, true))) => Step::Moves { length, direction },
+        (true, true, Some((true, _))) => Step::Turns { by },
+        (true, true, _) => Step::Bends { length, direction, by },
     }
 }
 
@@ -170,7 +202,28 @@ impl PathBuilder {
         self.push(direction, |last| last.then_line(length))
     }
 
-    /// Turns the body by an angle, less than half a turn.
+    /// Moves by a chord while the body turns at a constant rate: arcs, of which no point is further than `deviation` \[m\] from the chord at the same
+    /// share of the time.
+    fn arcs(&mut self, chord: f64, direction: f64, by: f64, deviation: f64) -> Result<(), InvalidInput> {
+        // An arc is off by half the chord times the tangent of a quarter of its angle across, and along it, for an angle of 1 rad at most, by less than
+        // a tenth of that.
+        let off = |parts: f64| 1.1 * chord / parts / 2.0 * (by.abs() / parts / 4.0).tan();
+        let mut parts = (chord * by.abs() / 8.0 / deviation).sqrt().max(by.abs()).ceil().max(1.0);
+        while off(parts) > deviation {
+            parts += 1.0;
+        }
+        let (angle, chord) = (by / parts, chord / parts);
+        let radius = chord / 2.0 / (angle.abs() / 2.0).sin();
+        let turn = if angle > 0.0 { TurnSide::Left } else { TurnSide::Right };
+        for _ in 0..parts as u32 {
+            self.push(direction - angle / 2.0, |last| last.then_arc(radius, turn, radius * angle.abs()))?;
+            self.direction += angle;
+            self.heading += angle;
+        }
+        Ok(())
+    }
+
+    /// Turns the body by an angle, about half a turn at most.
     fn pivot(&mut self, lever: f64, by: f64) -> Result<(), InvalidInput> {
         let turn = if by > 0.0 { TurnSide::Left } else { TurnSide::Right };
         self.push(self.direction, |last| last.then_pivot(lever, turn, lever * by.abs()))?;

@@ -26,19 +26,21 @@ pub enum Footprint {
     },
 }
 
-/// The trajectory of an agent. Between two waypoints it moves along a line at a constant speed, or turns in place, or waits.
+/// The trajectory of an agent. Between two waypoints it moves along a line at a constant speed, or turns in place, or waits; or it moves and turns
+/// ([`Trajectory::with_deviation`]).
 /// Before the first one it stands there, and at the last one it stays.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Trajectory {
     pub(crate) poses: Vec<TimedPose>,
     pub(crate) footprint: Option<Footprint>,
     pub(crate) margin: f64,
+    pub(crate) deviation: f64,
 }
 
 impl Trajectory {
     /// A trajectory through these poses, without a footprint yet.
     pub fn new(poses: impl IntoIterator<Item = TimedPose>) -> Self {
-        Self { poses: poses.into_iter().collect(), footprint: None, margin: 0.0 }
+        Self { poses: poses.into_iter().collect(), footprint: None, margin: 0.0, deviation: 0.0 }
     }
 
     /// The poses of a plan in equal steps of time \[s\], as executors exchange them.
@@ -57,6 +59,13 @@ impl Trajectory {
     #[must_use]
     pub fn with_margin(self, margin: f64) -> Self {
         Self { margin, ..self }
+    }
+
+    /// Returns the trajectory of an outline that may move and turn at once, both at constant rates. Its path is made of arcs then, which deviate by this
+    /// \[m\] at most, and it is larger by three times that. Without it, or with 0, such a trajectory is refused.
+    #[must_use]
+    pub fn with_deviation(self, deviation: f64) -> Self {
+        Self { deviation, ..self }
     }
 
     /// Adds waypoints in between, so that none is later than the one before by more than `longest` \[s\]. Waypoints get new indices; the
@@ -86,7 +95,7 @@ impl Trajectory {
             poses.push(to);
             indices.push(poses.len() - 1);
         }
-        (Self { poses, footprint: self.footprint.clone(), margin: self.margin }, indices)
+        (Self { poses, ..self.clone() }, indices)
     }
 
     /// The waypoints.

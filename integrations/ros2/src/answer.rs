@@ -48,14 +48,20 @@ fn spatial(pose: TimedPose) -> SpatialPose {
 
 impl Answer {
     /// `others` are refusals of robots that are not configured: whoever they are, they may be anywhere.
-    pub(crate) fn new(known: &[Known<'_>], others: &[Refusal], header: Header) -> Self {
+    /// `order` is that of these paths, if there is one already, and is left here otherwise: it does not change with time.
+    pub(crate) fn new(
+        known: &[Known<'_>],
+        others: &[Refusal],
+        order: &mut Option<Result<Order, String>>,
+        header: Header,
+    ) -> Self {
         let mut answer = Self::default();
         for (b, second) in known.iter().enumerate() {
             for first in &known[..b] {
                 answer.pair([first, second], header.stamp);
             }
         }
-        answer.authorities = authorities(known, others, &header);
+        answer.authorities = authorities(known, others, order, &header);
         answer.markers = markers::of(known, &answer.conflicts.conflicts, &header);
         answer.authorities.header = header.clone();
         answer.conflicts.header = header;
@@ -121,14 +127,19 @@ fn conflicts(pair: [&Known<'_>; 2], now: Time) -> Result<Vec<ConflictReport>, St
         .collect()
 }
 
-fn authorities(known: &[Known<'_>], others: &[Refusal], header: &Header) -> AuthoritiesReport {
+fn authorities(
+    known: &[Known<'_>],
+    others: &[Refusal],
+    order: &mut Option<Result<Order, String>>,
+    header: &Header,
+) -> AuthoritiesReport {
     let all: Vec<&Known<'_>> = known.iter().collect();
     let named = |agent: usize| known.get(agent).map(|known| known.robot.name.clone()).unwrap_or_default();
     let strangers = others.iter().map(Refusal::to_string).collect::<Vec<_>>().join("; ");
     let found = if strangers.is_empty() { motions(&all) } else { Err(strangers) };
     let found = found.and_then(|found| {
         let fleet: Vec<Motion<'_, f64>> = found.iter().map(|(_, motion)| *motion).collect();
-        let Order { places, stuck } = order::of(&fleet)?;
+        let Order { places, stuck } = order.get_or_insert_with(|| order::of(&fleet)).clone()?;
         let each = (found.iter().zip(&places).enumerate()).map(|(agent, ((robot, motion), place))| {
             authority(robot, motion, place, header.stamp, named).map(|of| AuthorityReport { robot: named(agent), ..of })
         });

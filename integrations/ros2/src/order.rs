@@ -5,8 +5,8 @@
 //! passes, neither may go. Nobody is taken to be further than at the beginning of his path, so that an authority holds wherever the others are.
 
 use pcr_core::{
-    AdmissionError, CheckState, CheckTolerances, EcmEntry, Motion, MovementAuthority, PassingState, Piece,
-    PrecedenceTable, Progress, RegionPrecedence, RegionRef,
+    AdmissionError, CheckState, CheckTolerances, EcmEntry, MismatchError, Motion, MovementAuthority, PassingState,
+    Piece, PrecedenceTable, Progress, RegionPrecedence, RegionRef,
 };
 
 /// How far a robot may go.
@@ -40,11 +40,7 @@ const GAIN: f64 = 1e-3;
 /// The order of a fleet, or why there is none.
 pub(crate) fn of(fleet: &[Motion<'_, f64>]) -> Result<Order, String> {
     let mut table = Table::grown(fleet).map_err(|full| full.to_string())?;
-    for second in 0..fleet.len() {
-        for first in 0..second {
-            decide(&mut table, fleet, [first, second]).map_err(|problem| problem.to_string())?;
-        }
-    }
+    decide(&mut table, fleet).map_err(|problem| problem.to_string())?;
     let progress = vec![Progress::at_rest(0.0); fleet.len()];
     let mut places = Vec::with_capacity(fleet.len());
     for agent in 0..fleet.len() {
@@ -66,39 +62,32 @@ pub(crate) fn of(fleet: &[Motion<'_, f64>]) -> Result<Order, String> {
     Ok(Order { places, stuck })
 }
 
-/// Decides the order of two agents in all of their regions.
-fn decide(table: &mut Table, fleet: &[Motion<'_, f64>], pair: [usize; 2]) -> Result<(), AdmissionError> {
-    let [first, second] = pair;
-    let places: Vec<usize> =
-        table.decisions().filter(|decision| decision.agents == pair).map(|decision| decision.place).collect();
-    if places.is_empty() {
-        return Ok(());
+/// Decides the order in all regions.
+fn decide(table: &mut Table, fleet: &[Motion<'_, f64>]) -> Result<(), MismatchError> {
+    let mut decided = Vec::new();
+    for agent in 0..fleet.len() {
+        let own = table.row(fleet, agent)?.filter(|(_, region, _)| region.other() > agent);
+        decided.extend(own.map(|(place, region, _)| (place, agent, earlier(&region))));
     }
-    let two = [fleet[first], fleet[second]];
-    let mut planned = Table::grown(&two)?;
-    let states: Vec<PassingState> = match planned.as_planned(&two) {
-        Ok(()) => planned.decisions().map(|decision| decision.pass).collect(),
-        Err(AdmissionError::Meeting(_)) => {
-            table.ecm().pair(fleet, first, second)?.map(|region| earlier(&region)).collect()
-        }
-        Err(problem) => return Err(problem),
-    };
-    for (&place, &state) in places.iter().zip(&states).filter(|(_, state)| **state != PassingState::Undecided) {
-        table.decide_at(fleet, place, first, state, 0.0)?;
+    for (place, agent, state) in decided.into_iter().filter(|(.., state)| *state != PassingState::Undecided) {
+        table.decide_at(fleet, place, agent, state, 0.0)?;
     }
     Ok(())
 }
 
-/// Whether the ego of a region goes first, of two robots that meet. Undecided, neither may go there.
+/// Whether the ego of a region goes first. Undecided, neither may go there.
 fn earlier(region: &RegionRef<'_, f64>) -> PassingState {
     let swapped = region.clone().swapped();
     let stands = [region, &swapped].map(|region| region.hold(0.0, 0.0) == MovementAuthority::Inside);
-    let entry = |region: &RegionRef<'_, f64>| region.ego_motion().time_in(region.length()).lo;
     match stands {
-        [true, true] => PassingState::Undecided,
-        [true, false] => PassingState::First,
-        [false, true] => PassingState::Second,
-        [false, false] if entry(region) <= entry(&swapped) => PassingState::First,
-        [false, false] => PassingState::Second,
+        [true, true] => return PassingState::Undecided,
+        [true, false] => return PassingState::First,
+        [false, true] => return PassingState::Second,
+        [false, false] => {}
     }
+    // If it would meet the other one by being late, it is before it.
+    let late = region.forbidden_delays();
+    let entry = |region: &RegionRef<'_, f64>| region.ego_motion().time_in(region.length()).lo;
+    let is_first = late.lo > 0.0 || (late.hi >= 0.0 && entry(region) <= entry(&swapped));
+    if is_first { PassingState::First } else { PassingState::Second }
 }

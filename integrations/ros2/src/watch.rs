@@ -3,6 +3,7 @@
 use crate::answer::{Answer, Known};
 use crate::config::Config;
 use crate::messages::{FleetRobotState, FleetState, Header, PathMessage, Time};
+use crate::order::Order;
 use crate::planned_path::PlannedPath;
 use crate::refusal::Refusal;
 use crate::report::RefusalReport;
@@ -14,6 +15,8 @@ pub struct Watch {
     config: Config,
     /// Of each robot what its last message was.
     paths: Vec<Result<PlannedPath, Refusal>>,
+    /// That of the paths, if it was computed.
+    order: Option<Result<Order, String>>,
     /// Of each fleet the robots that are not configured.
     strangers: BTreeMap<String, Vec<String>>,
     /// Why the last fleet state could not be read.
@@ -24,7 +27,7 @@ impl Watch {
     /// No path has come yet.
     pub fn new(config: Config) -> Self {
         let paths = config.robots.iter().map(|_| Err(Refusal::NoPath)).collect();
-        Self { config, paths, strangers: BTreeMap::new(), unreadable: None }
+        Self { config, paths, order: None, strangers: BTreeMap::new(), unreadable: None }
     }
 
     /// The configuration.
@@ -41,6 +44,7 @@ impl Watch {
     /// Takes the state of a fleet. Robots of it that are configured and not in there have no path any more.
     pub fn take_fleet(&mut self, state: &FleetState) {
         self.unreadable = None;
+        self.order = None;
         for (robot, place) in self.config.robots.iter().zip(&mut self.paths) {
             let (Some(fleet), Some(level)) = (&robot.fleet, &robot.level) else { continue };
             if *fleet == state.name {
@@ -62,6 +66,7 @@ impl Watch {
 
     /// Takes a fleet state that could not be read: whose it was is not known.
     pub fn take_unreadable_fleet(&mut self, problem: &str) {
+        self.order = None;
         for (robot, place) in self.config.robots.iter().zip(&mut self.paths) {
             if robot.fleet.is_some() {
                 *place = Err(Refusal::Unreadable(problem.to_owned()));
@@ -78,11 +83,12 @@ impl Watch {
     fn set(&mut self, robot: usize, path: Result<PlannedPath, Refusal>) {
         if let Some(place) = self.paths.get_mut(robot) {
             *place = path;
+            self.order = None;
         }
     }
 
     /// What follows from the paths, from `now` on.
-    pub fn answer(&self, now: Time) -> Answer {
+    pub fn answer(&mut self, now: Time) -> Answer {
         let known: Vec<Known<'_>> = (self.config.robots.iter().zip(&self.paths))
             .map(|(robot, path)| {
                 let path = path.as_ref().map_err(Clone::clone);
@@ -107,7 +113,7 @@ impl Watch {
         });
         let refusals = refused.chain(others).collect();
         let header = Header { stamp: now, frame_id: self.config.frame.clone() };
-        let mut answer = Answer::new(&known, &strangers, header);
+        let mut answer = Answer::new(&known, &strangers, &mut self.order, header);
         answer.conflicts.refusals = refusals;
         answer
     }
