@@ -21,7 +21,7 @@ def metadata(folder):
 
 
 def release(version):
-    return [int(part) for part in version.split(".")]
+    return ([int(part) for part in version.split(".")] + [0, 0])[:3]
 
 
 def oldest(found):

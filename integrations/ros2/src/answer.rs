@@ -62,7 +62,8 @@ impl Answer {
             }
         }
         answer.authorities = authorities(known, others, order, &header);
-        answer.markers = markers::of(known, &answer.conflicts.conflicts, &header);
+        let robots: Vec<&RobotConfig> = known.iter().map(|known| known.robot).collect();
+        answer.markers = markers::of(&robots, &answer.conflicts.conflicts, &header);
         answer.authorities.header = header.clone();
         answer.conflicts.header = header;
         answer

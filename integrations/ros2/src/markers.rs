@@ -1,6 +1,5 @@
 //! Markers for RViz: the outlines of two robots where they overlap most.
 
-use crate::answer::Known;
 use crate::config::RobotConfig;
 use crate::messages::{Colour, Header, Marker, MarkerArray, Position};
 use crate::report::ConflictReport;
@@ -14,13 +13,13 @@ const WIDTH: f64 = 0.03;
 const RED: Colour = Colour { r: 1.0, g: 0.1, b: 0.1, a: 1.0 };
 
 /// Deletes what is there, and draws each conflict.
-pub(crate) fn of(known: &[Known<'_>], conflicts: &[ConflictReport], header: &Header) -> MarkerArray {
+pub(crate) fn of(robots: &[&RobotConfig], conflicts: &[ConflictReport], header: &Header) -> MarkerArray {
     let clear = Marker { header: header.clone(), action: Marker::DELETE_ALL, ..Default::default() };
     let outlines = conflicts
         .iter()
         .flat_map(|conflict| [(&conflict.robot_a, conflict.pose_a), (&conflict.robot_b, conflict.pose_b)]);
     let drawn = outlines.zip(0..).filter_map(|((name, pose), id)| {
-        let robot = known.iter().find(|known| known.robot.name == *name)?.robot;
+        let robot = robots.iter().find(|robot| robot.name == *name)?;
         Some(Marker {
             header: header.clone(),
             ns: "conflicts".to_owned(),

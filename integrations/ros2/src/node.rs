@@ -4,7 +4,7 @@ use crate::messages::{FleetState, MarkerArray, PathMessage, Time};
 use crate::report::{AuthoritiesReport, ConflictsReport};
 use crate::{Answer, Config, Watch};
 use ros2_client::dds::rustdds::mio1::{Events, Interest, Poll, Token};
-use ros2_client::qos::{Durability, History, WhenFull};
+use ros2_client::qos::{History, WhenFull};
 use ros2_client::{
     Context, ContextOptions, MessageTypeName, Name, Node, NodeName, NodeOptions, Publisher, QosProfile, Subscription,
 };
@@ -62,8 +62,8 @@ impl PcrNode {
             }
             None => None,
         };
-        // Whoever comes late gets the latest.
-        let latest = reliable(1).durability(Durability::TransientLocal);
+        // Nothing is kept for those who come late: it may be of paths that do not hold any more, and there is an answer at least each second.
+        let latest = reliable(1);
         let own = |kind| MessageTypeName::new("pcr_msgs", kind);
         let conflicts = node.create_topic(&name("pcr/conflicts")?, own("Conflicts"), &latest)?;
         let authorities = node.create_topic(&name("pcr/authorities")?, own("Authorities"), &latest)?;
