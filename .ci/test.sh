@@ -140,7 +140,7 @@ tls() {
   cargo test -p pcr-serve --features tls --locked --test vda5050 -- --include-ignored tls::
 }
 
-# Not part of everything: more than a minute of building what other software depends on.
+# Not part of everything: minutes of building what other software depends on.
 integrations() {
   step "integrations: lints, licences, tests"
   (
@@ -151,8 +151,10 @@ integrations() {
   )
   .ci/dependencies.py integrations
   deny integrations
-  .ci/circles.py integrations/rmf-mapf/src
-  .ci/names.py integrations/rmf-mapf/src
+  .ci/circles.py integrations/{rmf-mapf,ros2}/src
+  .ci/names.py integrations/{rmf-mapf,ros2}/src
+  step "the node for ROS 2, with CycloneDDS on the other side"
+  (cd integrations && ros2/tests/dds/check.sh "${CARGO_TARGET_DIR:-target}/debug/pcr-ros2")
 }
 
 # Not part of everything, as it needs npm and a registry: vehicles and a manager that others wrote.

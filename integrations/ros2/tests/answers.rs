@@ -102,6 +102,23 @@ fn who_stands_in_the_way_goes_first() {
 }
 
 #[test]
+fn an_authority_that_ends_in_a_turn() {
+    // A long robot turns to the left, after a disc has passed at its side.
+    let mut watch = watch(&[r#""outline": [[-0.2, -0.1], [1, -0.1], [1, 0.1], [-0.2, 0.1]]"#, r#""radius": 0.3"#]);
+    watch.take(0, &path(&[(5.0, 0.0, 0.0, 0.0), (7.0, 0.0, 0.0, FRAC_PI_2), (9.0, 0.0, 2.0, FRAC_PI_2)]));
+    watch.take(1, &path(&[(0.0, -3.0, 0.8, 0.0), (6.0, 3.0, 0.8, 0.0)]));
+    let answer = watch.answer(NOW);
+    assert_eq!(pair(&answer, "0", "1").state, PairReport::CLEAR);
+    let found = authority(&answer, "0");
+    assert_eq!((found.state, found.waits_for.as_str(), found.length), (AuthorityReport::LIMITED, "1", 0.0));
+    // Its corner, at 1 m ahead and 0.1 m to the left, is 0.5 m to the side then, less 3 mm.
+    let yaw = 2.0 * found.pose.orientation.z.atan2(found.pose.orientation.w);
+    let side = yaw.sin() + 0.1 * yaw.cos();
+    assert!(side < 0.5 && side > 0.495, "{side}");
+    assert_near(seconds(found.time), 5.0 + 2.0 * yaw / FRAC_PI_2, 1e-6);
+}
+
+#[test]
 fn planners_without_times() {
     let robot = |name: &str| {
         format!(

@@ -215,6 +215,10 @@ fn configurations() {
         let error = Config::from_json(&good.replacen(from, to, 1)).expect_err(problem).to_string();
         assert!(error.contains(problem), "{error}");
     }
+    let readme = include_str!("../README.md");
+    let (_, example) = readme.split_once("```json\n").expect("an example");
+    let (example, _) = example.split_once("```").expect("its end");
+    assert_eq!(Config::from_json(example).expect("the example of the README").robots.len(), 3);
     let one = r#"{ "frame": "map", "max_age": 2, "robots": [] }"#;
     assert_eq!(Config::from_json(one).expect_err("none").to_string(), "there are not two robots");
 }
