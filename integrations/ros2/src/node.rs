@@ -106,7 +106,7 @@ impl PcrNode {
             }
             let answer = self.watch.answer(now()?);
             log(&answer, &mut told);
-            self.publish(answer)?;
+            self.publish(answer);
         }
     }
 
@@ -134,11 +134,16 @@ impl PcrNode {
         any
     }
 
-    fn publish(&self, answer: Answer) -> Result<(), Failure> {
-        self.conflicts.publish(answer.conflicts).map_err(|problem| format!("conflicts: {problem:?}"))?;
-        self.authorities.publish(answer.authorities).map_err(|problem| format!("authorities: {problem:?}"))?;
-        self.markers.publish(answer.markers).map_err(|problem| format!("markers: {problem:?}"))?;
-        Ok(())
+    /// Publishes an answer. One that a reader is too slow for is told, and not kept: the next one comes within a second.
+    fn publish(&self, answer: Answer) {
+        let sent = [
+            ("conflicts", self.conflicts.publish(answer.conflicts).map_err(|problem| format!("{problem:?}"))),
+            ("authorities", self.authorities.publish(answer.authorities).map_err(|problem| format!("{problem:?}"))),
+            ("markers", self.markers.publish(answer.markers).map_err(|problem| format!("{problem:?}"))),
+        ];
+        for (topic, problem) in sent.into_iter().filter_map(|(topic, sent)| Some((topic, sent.err()?))) {
+            eprintln!("pcr-ros2: {topic} were not sent: {problem}");
+        }
     }
 }
 

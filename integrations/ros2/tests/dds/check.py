@@ -258,6 +258,17 @@ def unreadable(side):
     side.wait("after a short message", lambda answer: states(answer) == [CONFLICT, CLEAR, CLEAR])
 
 
+def long_path(side):
+    """A message that takes many packets."""
+    poses = [(1 + k * 0.01, -30 + k * 0.01, 30 + math.sin(k * 0.01), 0) for k in range(6000)]
+    side.send("east", path(poses))
+    length = sum(math.dist(one[1:3], other[1:3]) for one, other in zip(poses, poses[1:]))
+    answer = side.settled(lambda: side.send("north", path(NORTH)))
+    assert states(answer) == [CLEAR] * 3, answer["conflicts"].pairs
+    east = answer["authorities"].robots[0]
+    assert east.state == FREE and abs(east.length - length) < 1e-6, (east, length)
+
+
 def place(poses, at):
     """Where a robot is, and how fast, from this time on."""
     for (t0, x0, y0, _), (t1, x1, y1, _) in zip(poses, poses[1:]):
@@ -364,6 +375,7 @@ def main():
             crossing(side)
             refused(side)
             unreadable(side)
+            long_path(side)
             number = random_paths(side)
             assert node.poll() is None
         finally:
