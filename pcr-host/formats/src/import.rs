@@ -86,7 +86,9 @@ pub use json_access::parse as parse_json;
 pub use layout::{ElementId, Layout, LayoutEdge, LayoutNode, LayoutZone};
 pub use nav2::graph_id;
 #[cfg(feature = "bags")]
-pub use poses::{BAG, poses_in_bag};
+pub(crate) use poses::BAG;
+#[cfg(feature = "bags")]
+pub use poses::poses_in_bag;
 pub use poses::{BetweenPoses, HeldTime, PoseLog, PoseOptions, PoseTrack, TimedPose, poses};
 pub use rmf::is_navigation_graph;
 pub use route::{RouteStep, cheapest, ride, turn};
