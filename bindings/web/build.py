@@ -21,7 +21,9 @@ def only(pattern):
 def main(module, page):
     packed = base64.b64encode(gzip.compress(Path(module).read_bytes(), 9, mtime=0)).decode()
     scenario = json.dumps(json.loads((TOP / "tests/data/paper12.json").read_text()), separators=(",", ":"))
-    code = only("pcr-host/**/outward.js") + "".join((HERE / name).read_text() for name in ("scenario.js", "draw.js", "playground.js"))
+    code = only("pcr-host/**/outward.js") + "".join((HERE / name).read_text() for name in ("scenario.js", "draw.js", "history.js", "lessons.js", "playground.js"))
+    # Comments of whole lines are read in the sources.
+    code = "".join(line for line in code.splitlines(keepends=True) if not line.lstrip().startswith(("// ", "/** ")))
     text = (HERE / "playground.html").read_text()
     parts = {"/*STYLE*/": only("pcr-host/**/template.css"), "/*WASM*/": packed, "/*SCENARIO*/": scenario, "/*CODE*/": code}
     for mark, part in parts.items():

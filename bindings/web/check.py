@@ -10,6 +10,9 @@
 - what the tool refuses is refused, in files and in fields, and what it takes is taken, with the reason said and nothing of it drawn;
 - a disc becomes a convex polygon, whose corners are dragged and added, and the tool says the same of it, bit for bit;
 - an agent is removed, and the others keep their colours and can be edited;
+- of every lesson, what it says to drag leads to what it says, and its figures are those of the tool;
+- whatever changes the scenario is undone and done again, one drag as one change, by buttons and by keys;
+- while time goes on, agents drive, and the map is drawn up to now;
 - a link that is copied opens the scenario, in a new window and in one that shows the page.
 
 Screenshots stay in FOLDER."""
@@ -20,34 +23,9 @@ import subprocess
 import sys
 from pathlib import Path
 
-TOP = Path(__file__).resolve().parents[2]
-sys.path[:0] = [str(path.parent) for path in TOP.glob("pcr-host/tests/browser/pages.py")]
-from pages import SLEEP, WIDTHS, Browser, reached_by_tab  # noqa: E402
-
-ROWS = "(() => {{ rows(pcr.pcr_build(scenario.agents.length), 0); return rows({}); }})()"
-
-
-def mouse(browser, kind, x, y):
-    browser.call("Input.dispatchMouseEvent", type=kind, x=x, y=y, button="left", buttons=1, clickCount=1)
-
-
-def finger(browser, kind, x, y):
-    browser.call("Input.dispatchTouchEvent", type=kind, touchPoints=[] if kind == "touchEnd" else [{"x": x, "y": y}])
-
-
-def drag(browser, kind, by, touch=False, moves=2):
-    act = finger if touch else mouse
-    begin, on, end = ("touchStart", "touchMove", "touchEnd") if touch else ("mousePressed", "mouseMoved", "mouseReleased")
-    handle = browser.value(f"""(() => {{ const p = $('plane'); p.scrollIntoView({{ block: 'center' }}); const b = p.getBoundingClientRect();
-      const h = handles(scenario.agents[chosen], frame(p.clientWidth, p.clientHeight).at).find((h) => h.kind === '{kind}');
-      return [h.x + b.left, h.y + b.top]; }})()""")
-    act(browser, begin, *handle)
-    for move in range(1, moves + 1):
-        act(browser, on, handle[0] + by[0] * move / moves, handle[1] + by[1] * move / moves)
-        browser.value(SLEEP.format(50))
-    act(browser, end, handle[0] + by[0], handle[1] + by[1])
-    browser.value(SLEEP.format(100))
-
+from hands import SLEEP, TOP, drag, finger, mouse, of_tool, ready, same, wait
+from lessons import by_finger, driving, lessons, undoing
+from pages import WIDTHS, Browser, reached_by_tab
 
 ONE = {"agents": [{"id": 1, "radius": 0.2, "v_max": 1, "a_max": 1, "start": {"x": 0, "y": 0, "heading": 0}, "path": [{"kind": "line", "length": 2}]}]}
 
@@ -84,14 +62,6 @@ def keys(browser):
     start = browser.value("scenario.agents[0].start")
     expected = {"x": 0.05, "y": 0.1, "heading": math.radians(5)}
     return [] if all(abs(start[name] - value) < 1e-12 for name, value in expected.items()) else [f"keys move the start to {start}"]
-
-
-def wait(browser, done):
-    for _ in range(100):
-        if done():
-            return True
-        browser.value(SLEEP.format(50))
-    return False
 
 
 def load(browser, file):
@@ -313,34 +283,6 @@ def links(browser, page):
     return wrong + ([] if said.startswith("The link is not a scenario") and browser.value("scenario.agents.length") == 12 else [f"a damaged link: {said}"])
 
 
-def ready(browser):
-    if not wait(browser, lambda: browser.value("document.body.dataset.ready") == "yes"):
-        raise SystemExit("check: the page does not come up")
-
-
-def of_tool(tool, folder, browser):
-    """What the tool says of the scenario of the page, in the order and shape of the page's rows."""
-    scenario = browser.value("JSON.stringify(scenario)")
-    file = folder / "scenario.json"
-    file.write_text(scenario)
-    ids = {agent["id"]: k for k, agent in enumerate(json.loads(scenario)["agents"])}
-    run = lambda *arguments: json.loads(subprocess.run([tool, *arguments, file, "--json", "-q"], capture_output=True, text=True, check=False).stdout)
-    regions = [[ids[r["i"]], ids[r["j"]], *r["t"], *r["l"]] for r in run("regions")["regions"]]
-    conflicts = [[ids[c["i"]], ids[c["j"]], *c["t"], c["depth"]] for c in run("check")["conflicts"]]
-    return sorted(regions), sorted(conflicts)
-
-
-def same(tool, folder, browser, when):
-    page = (sorted(row[:6] for row in browser.value(ROWS.format("pcr.pcr_regions(), 10"))),
-            sorted(row[:5] for row in browser.value(ROWS.format("pcr.pcr_conflicts(), 10"))))
-    tools = of_tool(tool, folder, browser)
-    if page == tools:
-        print(f"{when}: {len(page[0])} regions and {len(page[1])} conflicts, the same bits")
-        return []
-    return [f"{when}: the page and the tool differ: {[len(part) for part in page]} and {[len(part) for part in tools]} rows; "
-            f"{next((pair for part in (0, 1) for pair in zip(page[part], tools[part]) if pair[0] != pair[1]), None)}"]
-
-
 def main(tool, page, folder):
     folder, page = Path(folder).resolve(), Path(page).resolve()
     folder.mkdir(parents=True, exist_ok=True)
@@ -380,6 +322,7 @@ def main(tool, page, folder):
         took = sorted(browser.value("update = inner, took"))
         print(f"a drag with {browser.value('scenario.agents.length')} agents, regions and pictures: {len(took)} frames of {took[len(took) // 2]:.1f} ms, {took[-1]:.1f} ms at most")
         wrong += snapping(browser) + keys(browser) + files(tool, folder, browser) + refusals(tool, folder, browser) + fields(browser) + removals(browser) + outlines(tool, folder, browser) + links(browser, page)
+        wrong += lessons(tool, folder, browser) + undoing(folder, browser) + driving(folder, browser)
         wrong += browser.noise()
         browser.open(page, 390, "dark")
         ready(browser)
@@ -399,10 +342,11 @@ def main(tool, page, folder):
         finger(browser, "touchEnd", *empty)
         if not wait(browser, lambda: browser.value("scrollY") > before_scroll + 50):
             wrong.append("a finger that has hold of nothing does not scroll")
-        browser.call("Emulation.setTouchEmulationEnabled", enabled=False)
         if browser.value("JSON.stringify(scenario)") == before:
             wrong.append("a finger changes nothing")
         wrong += same(tool, folder, browser, "after a finger at 390 px")
+        wrong += by_finger(folder, browser)
+        browser.call("Emulation.setTouchEmulationEnabled", enabled=False)
         browser.open(page, 1400, "light")
         ready(browser)
         # The paper's fleet has a plan.

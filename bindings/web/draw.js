@@ -76,7 +76,7 @@ function drawPlane() {
   const { pen, width, height } = fit($("plane"));
   if (!answers.valid) return;
   const { at } = frame(width, height);
-  const spacing = 10 ** Math.ceil(Math.log10(40 / view.zoom));
+  const spacing = 10 ** Math.ceil(Math.log10(24 / view.zoom));
   pen.strokeStyle = tint("--grid");
   for (const [axis, size] of [["x", width], ["y", height]]) {
     const half = size / 2 / view.zoom, first = Math.ceil((view[axis] - half) / spacing);
@@ -97,6 +97,15 @@ function drawPlane() {
     trace(pen, agent, at);
     pen.stroke();
   });
+  // What the map forbids at this time, on the path itself.
+  pen.globalAlpha = 0.45;
+  pen.lineWidth = 9;
+  for (const [, other, lo, hi] of scenario.agents.length ? rows(pcr.pcr_map(chosen, time, 0, 1), 4) : []) {
+    pen.strokeStyle = colour(other);
+    trace(pen, cut(scenario.agents[chosen], lo, hi), at);
+    pen.stroke();
+  }
+  pen.globalAlpha = 1;
   places.forEach(([x, y, heading], k) => {
     const [px, py] = at({ x, y });
     outline(pen, scenario.agents[k], { x, y, heading }, at);
@@ -148,29 +157,39 @@ function drawPlane() {
   }
 }
 
+/** Where the map has a time and a length: within the frame of its canvas. */
+function axes(width, height) {
+  const left = 50, top = 22, wide = width - left - 12, high = height - top - 28;
+  const length = answers.lengths[chosen];
+  return { left, top, wide, high, px: (t) => left + wide * (t - answers.first) / (answers.last - answers.first), py: (l) => top + high * (1 - (length > 0 ? l / length : 0)) };
+}
+
+/** Times and travelled lengths of the chosen agent. */
+function track() {
+  return rows(pcr.pcr_track(chosen, answers.first, step(), COLUMNS + 1), 1).map(([length], k) => [answers.first + k * step(), length]);
+}
+
 function drawMap() {
   const { pen, width, height } = fit($("map")), agent = scenario.agents[chosen];
-  const left = 44, bottom = 26, wide = width - left - 10, high = height - bottom - 10;
   if (!agent || !answers.valid) return;
-  const [, , , , end] = rows(pcr.pcr_places(time), 6)[chosen];
-  const px = (t) => left + wide * (t - answers.first) / (answers.last - answers.first), py = (l) => 10 + high * (1 - (end > 0 ? l / end : 0));
+  const { left, top, wide, high, px, py } = axes(width, height), length = answers.lengths[chosen];
   // Whole pixels, so that neighbours neither overlap nor leave a gap.
   const border = (place) => Math.round(left + wide * Math.min(Math.max(place - 0.5, 0) / COLUMNS, 1));
+  // While time goes on, what is still to come is faint: the map is drawn as the agents drive.
   for (const [place, other, lo, hi] of answers.map) {
     pen.fillStyle = colour(other);
-    pen.globalAlpha = 0.55;
+    pen.globalAlpha = playing && answers.first + place * step() > time ? 0.12 : 0.55;
     pen.fillRect(border(place), py(hi), border(place + 1) - border(place), Math.max(1, py(lo) - py(hi)));
   }
-  pen.globalAlpha = 1;
   pen.strokeStyle = tint("--own");
   pen.lineWidth = 2;
-  pen.beginPath();
-  const track = rows(pcr.pcr_track(chosen, answers.first, step(), COLUMNS + 1), 1);
-  for (let k = 0; k <= COLUMNS; k++) {
-    const t = answers.first + k * step();
-    if (k) pen.lineTo(px(t), py(track[k][0])); else pen.moveTo(px(t), py(track[k][0]));
+  for (const [from, to, faint] of [[-Infinity, time, 1], [time - step(), Infinity, playing ? 0.2 : 1]]) {
+    pen.globalAlpha = faint;
+    pen.beginPath();
+    track().filter(([t]) => from <= t && t <= to).forEach(([t, l], k) => (k ? pen.lineTo(px(t), py(l)) : pen.moveTo(px(t), py(l))));
+    pen.stroke();
   }
-  pen.stroke();
+  pen.globalAlpha = 1;
   const hold = answers.holds?.[chosen];
   if (hold !== undefined && isFinite(hold)) {
     pen.setLineDash([5, 4]);
@@ -180,19 +199,27 @@ function drawMap() {
     pen.stroke();
     pen.setLineDash([]);
   }
-  pen.strokeStyle = tint("--accent");
+  pen.strokeStyle = pen.fillStyle = tint("--accent");
   pen.beginPath();
-  pen.moveTo(px(time), 10);
-  pen.lineTo(px(time), 10 + high);
+  pen.moveTo(px(time), top);
+  pen.lineTo(px(time), top + high);
   pen.stroke();
+  pen.beginPath();
+  pen.arc(px(time), py(rows(pcr.pcr_places(time), 6)[chosen][3]), 5, 0, 7);
+  pen.fill();
   pen.strokeStyle = tint("--edge");
   pen.lineWidth = 1;
-  pen.strokeRect(left, 10, wide, high);
+  pen.strokeRect(left, top, wide, high);
   pen.fillStyle = tint("--dim");
-  pen.fillText(`${answers.first.toFixed(0)}`, left, height - 8);
-  pen.fillText(`${answers.last.toFixed(1)} s`, left + wide - 40, height - 8);
-  pen.fillText(`${end.toFixed(1)} m`, 4, 20);
-  pen.fillText("0", 30, 10 + high);
+  pen.fillText("travelled length [m]", 4, 14);
+  pen.textAlign = "right";
+  pen.fillText(length.toFixed(1), left - 6, top + 10);
+  pen.fillText("0", left - 6, top + high);
+  pen.fillText(answers.last.toFixed(1), left + wide, height - 10);
+  pen.textAlign = "center";
+  pen.fillText("time [s]", left + wide / 2, height - 10);
+  pen.textAlign = "left";
+  pen.fillText(answers.first.toFixed(0), left, height - 10);
 }
 
 function table(target, head, body) {

@@ -6,7 +6,7 @@ const colour = (k) => `hsl(${(hue(scenario.agents[k]) * 137.5 + 210) % 360} 65% 
 const dark = () => matchMedia("(prefers-color-scheme: dark)").matches;
 const tint = (name) => getComputedStyle(document.documentElement).getPropertyValue(name).trim();
 
-let pcr, scenario, chosen = 0, time = 0, playing = false, answers, view, grabbed = null, queued = false;
+let pcr, scenario, chosen = 0, time = 0, playing = false, answers, view, grabbed = null, queued = false, lesson = -1;
 // The number of the colour of each agent, which it keeps while others are added and removed.
 const hues = new WeakMap();
 // Why what stands in a field was not taken.
@@ -44,6 +44,7 @@ function update() {
     answers.valid = true;
     answers.first = Math.min(0, pcr.pcr_first());
     answers.last = Math.max(pcr.pcr_last(), answers.first + 1);
+    answers.lengths = rows(pcr.pcr_places(0), 6).map((place) => place[4]);
     answers.conflicts = rows(pcr.pcr_conflicts(), 10);
     if (agents.length) answers.map = rows(pcr.pcr_map(chosen, answers.first, step(), COLUMNS + 1), 4);
     const met = answers.conflicts.filter((row) => !row[5]).length;
@@ -53,6 +54,7 @@ function update() {
     say(error.message, true);
   }
   if (untaken) say(untaken, true);
+  teach();
   draw();
 }
 
@@ -90,7 +92,7 @@ function later(act = update) {
   requestAnimationFrame(() => { queued = false; act(); });
 }
 
-const SLIDERS = [["radius", "Radius [m]", 0.02, 1], ["v_max", "Speed [m/s]", 0.05, 3], ["a_max", "Acceleration [m/s²]", 0.05, 3], ["t_start", "Start [s]", 0, 60]];
+const SLIDERS = [["radius", "Radius [m]", 0.02, 1], ["v_max", "Speed [m/s]", 0.05, 3], ["a_max", "Acceleration [m/s²]", 0.05, 3], ["t_start", "Start [s]", 0, 20]];
 
 /** The controls of the chosen agent; of the last one, if the chosen one was behind it and is removed. */
 function edit() {
@@ -150,8 +152,9 @@ function edit() {
   }));
 }
 
+/** Where a pointer is: in the plane as it lay when the drag began, as what is said above it may become longer meanwhile. */
 function pointer(event) {
-  const box = $("plane").getBoundingClientRect(), px = event.clientX - box.left, py = event.clientY - box.top;
+  const box = grabbed?.box ?? $("plane").getBoundingClientRect(), px = event.clientX - box.left, py = event.clientY - box.top;
   return { px, py, x: view.x + (px - box.width / 2) / view.zoom, y: view.y - (py - box.height / 2) / view.zoom };
 }
 
@@ -192,15 +195,13 @@ function listen() {
       handle = handles(scenario.agents[chosen], at).find(near) ?? null;
       edit();
     }
-    grabbed = handle;
+    grabbed = handle && { ...handle, box: plane.getBoundingClientRect() };
     plane.setPointerCapture(event.pointerId);
     later();
   });
-  // A finger that has hold of nothing scrolls the page.
-  plane.addEventListener("touchstart", (event) => { if (grabbed) event.preventDefault(); }, { passive: false });
   plane.addEventListener("pointermove", (event) => {
     const agent = scenario.agents[chosen];
-    if (!grabbed || !agent) return;
+    if (!grabbed || grabbed.kind === "delay" || !agent) return;
     const point = pointer(event);
     if (grabbed.kind === "start") Object.assign(agent.start, { x: point.x, y: point.y });
     else if (grabbed.kind === "heading") agent.start.heading = snapped(Math.atan2(point.y - agent.start.y, point.x - agent.start.x));
@@ -208,9 +209,28 @@ function listen() {
     else agent.path[grabbed.leg] = legTo(joints(agent)[grabbed.leg], point);
     later();
   });
+  const map = $("map");
+  map.addEventListener("pointerdown", (event) => {
+    const agent = scenario.agents[chosen];
+    if (!agent || !answers.valid) return;
+    const box = map.getBoundingClientRect(), { px, py } = axes(box.width, box.height), reach = event.pointerType === "touch" ? 24 : 12;
+    const near = track().some(([t, l]) => Math.hypot(px(t) - (event.clientX - box.left), py(l) - (event.clientY - box.top)) < reach);
+    if (!near) return;
+    grabbed = { kind: "delay", from: event.clientX, start: agent.t_start, second: px(1) - px(0) };
+    map.setPointerCapture(event.pointerId);
+  });
+  map.addEventListener("pointermove", (event) => {
+    if (grabbed?.kind !== "delay") return;
+    scenario.agents[chosen].t_start = Math.max(0, +(grabbed.start + (event.clientX - grabbed.from) / grabbed.second).toFixed(3));
+    later();
+  });
   const drop = () => { if (grabbed) { grabbed = null; edit(); later(); } };
-  plane.addEventListener("pointerup", drop);
-  plane.addEventListener("pointercancel", drop);
+  for (const canvas of [plane, map]) {
+    // A finger that has hold of nothing scrolls the page.
+    canvas.addEventListener("touchstart", (event) => { if (grabbed) event.preventDefault(); }, { passive: false });
+    canvas.addEventListener("pointerup", drop);
+    canvas.addEventListener("pointercancel", drop);
+  }
   plane.addEventListener("keydown", (event) => {
     const agent = scenario.agents[chosen], way = { ArrowLeft: [-1, 0], ArrowRight: [1, 0], ArrowUp: [0, 1], ArrowDown: [0, -1] }[event.key];
     if (!agent || !way) return;
@@ -279,8 +299,21 @@ function listen() {
       draw();
       requestAnimationFrame(tick);
     };
-    if (playing) requestAnimationFrame(tick);
+    if (playing) requestAnimationFrame(tick); else draw();
   });
+  $("undo").addEventListener("click", () => travel(-1));
+  $("redo").addEventListener("click", () => travel(1));
+  document.addEventListener("keydown", (event) => {
+    const key = event.key.toLowerCase();
+    if (!(event.ctrlKey || event.metaKey) || event.altKey || (key !== "z" && key !== "y")) return;
+    event.preventDefault();
+    travel(key === "y" || event.shiftKey ? 1 : -1);
+  });
+  // Whatever changed the scenario ends with one of these, after its own listener: a drag, a slider, a field, a button or a key that is held.
+  for (const end of ["pointerup", "pointercancel", "change", "click", "keyup"]) document.addEventListener(end, remember);
+  $("lesson").append(...LESSONS.map(({ title }, k) => new Option(title, k)));
+  $("lesson").addEventListener("change", () => startLesson(Number($("lesson").value)));
+  $("next").addEventListener("click", () => startLesson((lesson + 1) % LESSONS.length));
   $("save").addEventListener("click", () => {
     const link = document.createElement("a");
     link.href = URL.createObjectURL(new Blob([JSON.stringify(scenario, null, 1)], { type: "application/json" }));
@@ -316,7 +349,7 @@ function listen() {
   matchMedia("(prefers-color-scheme: dark)").addEventListener("change", () => later(draw));
 }
 
-function open(found) {
+function open(found, of = -1) {
   const next = read(found);
   try {
     build(next);
@@ -329,8 +362,10 @@ function open(found) {
   chosen = 0;
   time = 0;
   view = null;
+  lesson = of;
   edit();
   update();
+  remember();
 }
 
 /** Opens what the address holds; says why it cannot be opened. */
@@ -349,8 +384,8 @@ async function begin() {
   const module = await new Response(new Blob([packed]).stream().pipeThrough(new DecompressionStream("gzip"))).arrayBuffer();
   pcr = (await WebAssembly.instantiate(module)).instance.exports;
   listen();
-  open(START);
   const wrong = address();
+  if (!scenario) open(START);
   if (wrong) say(wrong, true);
   document.body.dataset.ready = "yes";
 }

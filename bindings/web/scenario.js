@@ -166,6 +166,18 @@ function along(agent, length) {
   return poses.at(-1);
 }
 
+/** The part of an agent's path from one length to another, as an agent. */
+function cut(agent, from, to) {
+  let before = 0;
+  const path = agent.path.flatMap((leg) => {
+    const all = whole(leg), part = Math.min(to - before, all) - Math.max(from - before, 0);
+    before += all;
+    if (!(part > 0)) return [];
+    return [leg.kind === "line" ? { ...leg, length: part } : { ...leg, sweep: leg.sweep * part / all }];
+  });
+  return { start: along(agent, from), path };
+}
+
 const DEGREE = Math.PI / 180;
 const snapped = (angle) => { const near = Math.round(angle / (45 * DEGREE)) * 45 * DEGREE; return Math.abs(near - angle) < 3 * DEGREE ? near : angle; };
 
