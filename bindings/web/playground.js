@@ -79,7 +79,7 @@ function draw() {
   drawPlane();
   drawMap();
   const agent = scenario.agents[chosen], hold = answers.holds?.[chosen];
-  $("caption").textContent = agent && answers.valid ? `Collision map of agent ${name(chosen)}: where it must not be, by time and travelled length, in the colour of the other agent; the line is its motion.${
+  $("caption").textContent = agent && answers.valid ? `Collision map of agent ${name(chosen)}: where it must not be, by time and travelled length, in the colour of the other agent; the line is its motion, and is dragged to another start. What it must not have now is thick on its path.${
     hold === undefined ? "" : isFinite(hold) ? ` Now it may go to ${outward([hold, hold])[0]} m (dashed).` : " Now nobody is in its way."}` : "";
   const ends = (from, to) => outward([from, to]);
   table($("conflicts"), ["i", "j", "from [s]", "to [s]", "depth [m]"],
