@@ -13,6 +13,7 @@
 - of every lesson, what it says to drag leads to what it says, and its figures are those of the tool;
 - whatever changes the scenario is undone and done again, one drag as one change, by buttons and by keys;
 - while time goes on, agents drive, and the map is drawn up to now;
+- all of lessons, undoing and driving is so in Firefox, too, if this machine has it;
 - a link that is copied opens the scenario, in a new window and in one that shows the page.
 
 Screenshots stay in FOLDER."""
@@ -23,7 +24,8 @@ import subprocess
 import sys
 from pathlib import Path
 
-from hands import SLEEP, TOP, drag, finger, mouse, of_tool, ready, same, wait
+from firefox import Firefox
+from hands import SLEEP, TOP, choose, drag, finger, of_tool, ready, same, wait
 from lessons import by_finger, driving, lessons, undoing
 from pages import WIDTHS, Browser, reached_by_tab
 
@@ -67,8 +69,7 @@ def keys(browser):
 def load(browser, file):
     """What the page says to a file, also to the same one again, as whoever clicks on the field chooses it."""
     browser.value("say(''); $('load').dispatchEvent(new Event('click')); 0")
-    field = browser.call("Runtime.evaluate", expression="$('load')")["result"]["objectId"]
-    browser.call("DOM.setFileInputFiles", files=[str(file)], objectId=field)
+    choose(browser, file)
     wait(browser, lambda: browser.value("$('said').textContent"))
     return browser.value("$('said').textContent")
 
@@ -283,6 +284,32 @@ def links(browser, page):
     return wrong + ([] if said.startswith("The link is not a scenario") and browser.value("scenario.agents.length") == 12 else [f"a damaged link: {said}"])
 
 
+def in_firefox(program, tool, page, folder):
+    """What Firefox could do otherwise: it opens, is not too wide, and what is dragged, undone and driven is what it is in Chromium."""
+    folder.mkdir(exist_ok=True)
+    browser, wrong = Firefox(program), []
+    try:
+        for width in (390, 1400):
+            browser.open(page, width)
+            ready(browser)
+            wide = browser.value("document.documentElement.scrollWidth")
+            wrong += [f"{width} px: {wide} px wide"] if wide > width else []
+            browser.screenshot(folder / f"firefox-{width}.png")
+        wrong += same(tool, folder, browser, "in Firefox")
+        for kind, by in (("leg", (60, 35)), ("start", (-25, 40)), ("heading", (-20, -30))):
+            before = browser.value("JSON.stringify(scenario)")
+            drag(browser, kind, by)
+            wrong += [f"dragging a {kind} changes nothing"] if browser.value("JSON.stringify(scenario)") == before else []
+        wrong += same(tool, folder, browser, "in Firefox, after dragging")
+        wrong += lessons(tool, folder, browser) + undoing(folder, browser) + driving(folder, browser)
+        browser.open(page, 390)
+        ready(browser)
+        wrong += by_finger(folder, browser)
+        return [f"Firefox: {line}" for line in wrong + browser.noise()]
+    finally:
+        browser.close()
+
+
 def main(tool, page, folder):
     folder, page = Path(folder).resolve(), Path(page).resolve()
     folder.mkdir(parents=True, exist_ok=True)
@@ -369,6 +396,9 @@ def main(tool, page, folder):
         wrong += browser.noise()
     finally:
         browser.close()
+    other = next((path for path in map(shutil.which, ("firefox", "firefox-esr")) if path), None)
+    wrong += in_firefox(other, tool, page, folder / "firefox") if other else []
+    print("the same in Firefox" if other else "no Firefox here: not tried in it")
     print(f"playground: {len(WIDTHS) * 2} windows, {count} controls: {'ok' if not wrong else ''}")
     for line in wrong:
         print(f"  {line}")

@@ -6,6 +6,7 @@ from pathlib import Path
 
 TOP = Path(__file__).resolve().parents[2]
 sys.path[:0] = [str(path.parent) for path in TOP.glob("pcr-host/tests/browser/pages.py")]
+from firefox import Firefox  # noqa: E402
 from pages import SLEEP  # noqa: E402
 
 ROWS = "(() => {{ rows(pcr.pcr_build(scenario.agents.length), 0); return rows({}); }})()"
@@ -21,6 +22,10 @@ def finger(browser, kind, x, y):
 
 def pull(browser, point, by, touch=False, moves=2):
     """Drags from a point of the window, all in pixels."""
+    if isinstance(browser, Firefox):
+        browser.pull(point, by, touch, moves)
+        browser.value(SLEEP.format(100))
+        return
     act = finger if touch else mouse
     begin, on, end = ("touchStart", "touchMove", "touchEnd") if touch else ("mousePressed", "mouseMoved", "mouseReleased")
     act(browser, begin, *point)
@@ -45,6 +50,15 @@ def drag_line(browser, seconds, touch=False):
       const length = answers.lengths[chosen] / 2, [t, l] = track().find(([, l]) => l >= length);
       return [b.left + a.px(t), b.top + a.py(l), a.px(1) - a.px(0)]; })()""")
     pull(browser, point[:2], (seconds * point[2], 0), touch)
+
+
+def choose(browser, file):
+    """Chooses a file in the page's field for files."""
+    if isinstance(browser, Firefox):
+        browser.choose(file)
+        return
+    field = browser.call("Runtime.evaluate", expression="$('load')")["result"]["objectId"]
+    browser.call("DOM.setFileInputFiles", files=[str(file)], objectId=field)
 
 
 def wait(browser, done):

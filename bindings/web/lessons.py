@@ -3,7 +3,7 @@ import json
 import math
 import subprocess
 
-from hands import ROWS, SLEEP, TOP, drag, drag_line, of_tool, same, wait
+from hands import ROWS, SLEEP, TOP, choose, drag, drag_line, of_tool, same, wait
 
 REGIONS = ROWS.format("pcr.pcr_regions(), 10")
 # Times and the middles of the lengths that agent 1 may not have, by one region.
@@ -187,8 +187,7 @@ def undoing(folder, browser):
 
     def load():
         (folder / "undo.json").write_text((TOP / "tests/data/paper12.json").read_text().replace("paper12", "loaded"))
-        field = browser.call("Runtime.evaluate", expression="$('load')")["result"]["objectId"]
-        browser.call("DOM.setFileInputFiles", files=[str(folder / "undo.json")], objectId=field)
+        choose(browser, folder / "undo.json")
         wait(browser, lambda: browser.value("scenario.name") == "loaded")
 
     changes = {
