@@ -200,6 +200,12 @@ python() {
   .ci/readme.py "In Python"
 }
 
+# Not part of everything: packages of 100 MB. It takes what `python` has built.
+engines() {
+  step "what others compute with: a cluster of Dask, frames of GeoPandas"
+  bindings/python/engines.sh "${CARGO_TARGET_DIR:-target}/python/bin/python"
+}
+
 # The crates that could be published: licences, a README and all that they need are in them. Unpacked, they are a workspace of their own,
 # in which each of them, its tests and its examples are checked by the compiler. Those are run that take seconds to build; the others are
 # the same as in the repository, where the data of some is.

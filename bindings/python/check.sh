@@ -58,8 +58,8 @@ with contextlib.redirect_stdout(out):
     exec(program, {})
 sys.exit(0 if out.getvalue() == said else f"the README says\n{said}but it prints\n{out.getvalue()}")
 README
-# The notebook says what it says in the file.
-"$bin/python" bindings/python/notebooks/run.py bindings/python/notebooks/paper.ipynb
+# The notebooks say what they say in the file.
+for notebook in bindings/python/notebooks/*.ipynb; do PCR=$tool "$bin/python" bindings/python/notebooks/run.py "$notebook"; done
 "$bin/mypy" --config-file bindings/python/pyproject.toml -p pcr
 "$bin/mypy" --config-file bindings/python/pyproject.toml bindings/python/tests/test_pcr.py
 "$bin/stubtest" pcr._pcr --ignore-disjoint-bases

@@ -148,6 +148,10 @@ def lessons(tool, folder, browser):
 def by_finger(folder, browser):
     """The lessons at 390 px: what they say to drag can be dragged by a finger, and nothing is wider than the window."""
     wrong = []
+    # What a finger has thrown before goes on for a while.
+    place = lambda: browser.value("scrollY")
+    if not wait(browser, lambda: place() == (browser.value(SLEEP.format(150)), place())[1]):
+        wrong.append("the page scrolls on and on")
     # A long text above the plane becomes a short one: what is dragged stays at the finger.
     browser.value("open(START); $('plan').click(); 0")
     before = browser.value("[scenario.agents[0].start, frame($('plane').clientWidth, $('plane').clientHeight) && view.zoom, $('said').offsetHeight]")

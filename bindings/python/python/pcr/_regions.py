@@ -47,7 +47,10 @@ class Region(_Ranges):
         """
         if self._fleet is None:
             raise Error("this region is not of a fleet")
-        answer = self._fleet.report(slices=n, agent=self.i)
+        return self._outline(self._fleet.report(slices=n, agent=self.i))
+
+    def _outline(self, answer: dict[str, Any]) -> list[tuple[float, float, float]]:
+        """From a report on this agent."""
         rows = [*answer["regions"], *answer.get("margin_regions", [])]
         own = [row for row in rows if (row["j"], row["t"], row["l"]) == (self.j, list(self.t), list(self.l))]
         if not own:
@@ -57,10 +60,11 @@ class Region(_Ranges):
     def polygons(self, n: SupportsIndex = 60) -> list[list[tuple[float, float]]]:
         """The corners (time, length) of polygons through what it covers at ``n`` times inside, for pictures: between these times their edges
         are chords, which leave out slivers of it. None where the other agent stands all the time, because it has no end then."""
-        if self.t[0] == self.t[1]:
-            return []
+        return [] if self.t[0] == self.t[1] else self._polygons(self.outline(n))
+
+    def _polygons(self, outline: list[tuple[float, float, float]]) -> list[list[tuple[float, float]]]:
         columns: dict[float, list[Span]] = {}
-        for t, lo, hi in self.outline(n):
+        for t, lo, hi in outline:
             columns.setdefault(t, []).append((lo, hi))
         return chains(list(columns.items()), self.t, (self.open_start, self.open_end))
 
@@ -125,6 +129,25 @@ class Regions(Sequence[Region]):
         import numpy
 
         return numpy.frombuffer(self._rows, dtype=numpy.dtype(REGION, align=True))
+
+    def to_geopandas(self, n: SupportsIndex = 60) -> Any:
+        """A ``GeoDataFrame`` with a row for each region: the fields of the array, each range as two columns, and as geometry its
+        :meth:`Region.polygons`, time [s] as x and length [m] as y. The geometry is missing where the other agent stands all the time.
+        """
+        import geopandas  # type: ignore[import-not-found, import-untyped, unused-ignore]
+        from shapely.geometry import MultiPolygon, Polygon  # type: ignore[import-untyped, import-not-found, unused-ignore]
+
+        reports: dict[int, dict[str, Any]] = {}
+        rows, shapes = [], []
+        for region in self:
+            if region.i not in reports:
+                reports[region.i] = self._fleet.report(slices=n, agent=region.i)
+            stands = region.t[0] == region.t[1]
+            shapes.append(None if stands else MultiPolygon([Polygon(ring) for ring in region._polygons(region._outline(reports[region.i]))]))
+            rows.append((region.i, region.j, *region.t, *region.l, *region.l_j, region.open_start, region.open_end))
+        names = ("i", "j", "t_from", "t_to", "l_from", "l_to", "l_j_from", "l_j_to", "open_start", "open_end")
+        columns = dict(zip(names, zip(*rows))) if rows else {name: () for name in names}
+        return geopandas.GeoDataFrame(columns, geometry=shapes)
 
     def __array__(self, dtype: Any = None, copy: Optional[bool] = None) -> Any:
         array = self.array
