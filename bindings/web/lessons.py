@@ -1,6 +1,7 @@
 """Lessons of the playground do not lie; whatever is changed can be undone; agents drive while their map is drawn. check.py runs this."""
 import json
 import math
+import re
 import subprocess
 
 from hands import ROWS, SLEEP, TOP, choose, drag, drag_line, of_tool, same, wait
@@ -25,6 +26,10 @@ DRAGS = {
     "rectangle": lambda browser, touch, part: metres(browser, "leg", 0, 1.5 * part, touch, last=True),
 }
 
+# What each lesson says in figures: those that the claims below prove, and that DRAGS drags.
+FIGURES = {"diagonal": ["0.5 m/s", "0.5 m", "2 m"], "delay": ["2 s"], "opposite": ["1 m", "0.6 m"], "tangent": ["0.45 m", "0.6 m", "0.2 m", "0.6 m"],
+           "rectangle": ["1.6 m", "0.6 m", "5 cm", "1.5 m"]}
+
 
 def begin(browser, name):
     browser.value(f"startLesson(LESSONS.findIndex((lesson) => lesson.name === '{name}')); 0")
@@ -43,6 +48,7 @@ def slopes(browser, early, late):
 
 def diagonal(browser, tool, folder):
     rising = slopes(browser, 1.1, 3.2)
+    yield "0.5 m/s", browser.value("scenario.agents[1].v_max") == 0.5
     yield "rises by the speed of agent 2", len(rising) > 50 and all(abs(slope - 0.5) < 1e-9 for slope in rising)
     yield "agent 1 does not catch up as it opens", not of_tool(tool, folder, browser)[1]
     DRAGS["diagonal"](browser, False, 1)
@@ -93,6 +99,8 @@ def tangent(browser, tool, folder):
 
 
 def rectangle(browser, tool, folder):
+    sides = browser.value("[0, 1].map((axis) => { const all = polygon(scenario.agents[0]).map((corner) => corner[axis]); return Math.max(...all) - Math.min(...all); })")
+    yield "1.6 m by 0.6 m", sides == [1.6, 0.6]
     yield "nothing as it opens", not any(of_tool(tool, folder, browser))
     counts = [changed(browser, f"scenario.agents[1].start.y = -0.55 + {up}", "answers.map.length") for up in (0.049, 0.051)]
     yield "5 cm beside its way", counts[0] == 0 < counts[1]
@@ -123,6 +131,8 @@ def lessons(tool, folder, browser):
         for part in (0.85, 1, 1.15):
             begin(browser, name)
             sentences = browser.value("$('why').innerText.split(/[.?!](?:\\s|$)/).filter(Boolean).length")
+            figures = re.findall(r"[\d.]+ (?:m/s|cm|m|s)\b", browser.value("$('taught').textContent"))
+            wrong += [] if figures == FIGURES[name] else [f"{name} says {figures}, of which {FIGURES[name]} are proved"]
             wrong += [] if 2 <= sentences <= 4 else [f"{name}: {sentences} sentences"]
             wrong += [f"{name} is reached as it opens"] if browser.value(REACHED) else []
             DRAGS[name](browser, False, part)
