@@ -1,9 +1,9 @@
 #!/usr/bin/env bash
 # All checks and tests, step by step; stops at the first that fails. Any part that cannot run is a failure.
 # Needs rustup's cargo (https://rustup.rs); what else is missing it installs, and says so.
-#   .ci/test.sh            everything but benches, fuzz, tls, others and integrations
+#   .ci/test.sh            everything but benches, fuzz, tls, others, engines and integrations
 #   .ci/test.sh quick      for daily work: format, lints, unit tests
-#   .ci/test.sh STEP...    some: style docs features no_std c firmware tests benches serve tls others integrations pages web schemas python packages release instructions fuzz proofs
+#   .ci/test.sh STEP...    some: style docs features no_std c firmware tests benches serve tls others integrations pages web schemas python engines packages release instructions fuzz proofs
 set -euo pipefail
 cd "$(dirname "$0")/.."
 
