@@ -172,6 +172,9 @@ browser() {
   .ci/install.sh chromium
 }
 
+# Another one, of another house.
+firefox() { command -v firefox >/dev/null || command -v firefox-esr >/dev/null || .ci/install.sh firefox-esr; }
+
 # The tool as the tests have built it: `cargo build` would build much of it again, without what the tests ask of libraries.
 tool() { cargo test -q "${checked[@]}" "${targets[@]}" --no-run; }
 
@@ -185,8 +188,9 @@ pages() {
 }
 
 web() {
-  step "the module for WebAssembly, in node and in a browser"
+  step "the module for WebAssembly, in node and in browsers"
   browser
+  firefox
   tool
   bindings/web/check.sh "${CARGO_TARGET_DIR:-target}/checked/pcr"
   .ci/readme.py "In the browser"

@@ -13,7 +13,7 @@
 - of every lesson, what it says to drag leads to what it says, and its figures are those of the tool;
 - whatever changes the scenario is undone and done again, one drag as one change, by buttons and by keys;
 - while time goes on, agents drive, and the map is drawn up to now;
-- all of lessons, undoing and driving is so in Firefox, too, if this machine has it;
+- all of lessons, undoing and driving is so in Firefox, too;
 - a link that is copied opens the scenario, in a new window and in one that shows the page.
 
 Screenshots stay in FOLDER."""
@@ -397,8 +397,7 @@ def main(tool, page, folder):
     finally:
         browser.close()
     other = next((path for path in map(shutil.which, ("firefox", "firefox-esr")) if path), None)
-    wrong += in_firefox(other, tool, page, folder / "firefox") if other else []
-    print("the same in Firefox" if other else "no Firefox here: not tried in it")
+    wrong += in_firefox(other, tool, page, folder / "firefox") if other else ["there is no Firefox on this machine"]
     print(f"playground: {len(WIDTHS) * 2} windows, {count} controls: {'ok' if not wrong else ''}")
     for line in wrong:
         print(f"  {line}")
