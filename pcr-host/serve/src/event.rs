@@ -158,11 +158,18 @@ pub enum SupervisorEvent {
         /// Name of the robot.
         robot: String,
     },
+    /// The whole fleet is paused: all robots have to stop, and nobody is granted anything more.
+    Paused {
+        /// That, and who may not be able to, in words.
+        why: String,
+    },
+    /// The fleet is not paused any more.
+    Resumed {},
     /// A robot has to stop at once.
     Stop {
         /// Name of the robot.
         robot: String,
-        /// Robot because of which it has to stop.
+        /// Robot or closed area because of which it has to stop, or [`PAUSE`](crate::supervisor::PAUSE).
         by: String,
     },
     /// A stopped robot may go on, up to its hold.
@@ -181,9 +188,10 @@ impl SupervisorEvent {
         }
     }
 
-    /// Name of the robot that the event is about.
-    pub fn robot(&self) -> &str {
+    /// Name of the robot that the event is about; `None` if it is about all.
+    pub fn robot(&self) -> Option<&str> {
         match self {
+            Self::Paused { .. } | Self::Resumed {} => None,
             Self::Hold { robot, .. }
             | Self::Admitted { robot, .. }
             | Self::Limits { robot, .. }
@@ -199,7 +207,7 @@ impl SupervisorEvent {
             | Self::Alarm { robot, .. }
             | Self::Clear { robot }
             | Self::Stop { robot, .. }
-            | Self::Go { robot } => robot,
+            | Self::Go { robot } => Some(robot),
         }
     }
 }

@@ -198,7 +198,7 @@ pub fn answer(handle: &ServerHandle, site: &HttpContent, request: &[u8]) -> (&'s
         "/state" => match handle.ask(|supervisor, board, now| {
             let robots = supervisor.robots().iter();
             let views: Vec<RobotView<'_>> = robots.map(|robot| RobotView::new(supervisor, robot, now)).collect();
-            json!({ "now": now, "counts": supervisor.counts(), "robots": views, "away": supervisor.away(),
+            json!({ "now": now, "counts": supervisor.counts(), "robots": views, "away": supervisor.away(), "paused": supervisor.pause_reason(),
                 "unplaced": supervisor.unplaced().map(|(name, why)| format!("{name} {why}")).collect::<Vec<_>>(), "closures": supervisor.closures().collect::<Vec<_>>(), "events": board.events() }).to_string()
         }) {
             Some(text) => ("200 OK", "application/json", text),
@@ -213,12 +213,14 @@ pub fn answer(handle: &ServerHandle, site: &HttpContent, request: &[u8]) -> (&'s
             Some(()) => plain("200 OK", "it decides"),
             None => ended(),
         },
-        "/readyz" => match handle.ask(|supervisor, _, _| supervisor.broken().map(str::to_owned)) {
-            Some(None) => match site.unready.as_ref().and_then(Readiness::why) {
-                None => plain("200 OK", "it grants authority"),
-                Some(why) => plain("503 Service Unavailable", &why),
-            },
-            Some(Some(why)) => plain("503 Service Unavailable", &why),
+        "/readyz" => match handle.ask(|supervisor, _, _| [supervisor.broken().map(str::to_owned), supervisor.pause_reason()]) {
+            Some([broken, paused]) => {
+                let why = broken.or_else(|| site.unready.as_ref()?.why()).into_iter().chain(paused);
+                match why.collect::<Vec<_>>().join("; ").as_str() {
+                    "" => plain("200 OK", "it grants authority"),
+                    why => plain("503 Service Unavailable", why),
+                }
+            }
             None => ended(),
         },
         _ => plain("404 Not Found", "there is /, /state, /layout, /map?robot=NAME, /metrics, /healthz and /readyz"),

@@ -173,6 +173,11 @@ pub enum JournalEntry {
         /// Name of the area.
         closure: String,
     },
+    /// The whole fleet is paused, or goes on. (Not in journals of version 3.)
+    Paused {
+        /// Whether it is paused.
+        paused: bool,
+    },
     /// The alarm of a robot has begun, changed or ended.
     Alarm {
         /// Name of the robot.

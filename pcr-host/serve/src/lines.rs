@@ -44,6 +44,10 @@ enum Request {
     Close(ClosureRequest),
     /// An area is open again.
     Open(ClosureRef),
+    /// The whole fleet is paused.
+    Pause {},
+    /// The fleet goes on.
+    Resume {},
     /// The position of a robot.
     Position(PositionReport),
     /// A robot is off its path.
@@ -246,6 +250,8 @@ pub(crate) fn carry_out(supervisor: &mut Supervisor, request: RequestLine, came:
             supervisor.close(area).map(|impact| json!(impact))
         }
         Request::Open(ClosureRef { closure }) => supervisor.open(&closure).map(|there| json!({ "opened": there })),
+        Request::Pause {} => supervisor.pause().map(|impact| json!(impact)),
+        Request::Resume {} => supervisor.resume().map(|paused| json!({ "resumed": paused })),
         Request::Position(report) => supervisor.position(&report, came).map(|()| json!({})),
         Request::Off(OffPathReport { robot, x, y, age }) => {
             supervisor.report_off_path(&robot, [x, y], age, came).map(|()| json!({}))

@@ -1,6 +1,7 @@
 //! Log messages, one line each, as `key=value`, from a level on.
 
 use crate::event::SupervisorEvent;
+use crate::supervisor::PAUSE;
 use std::fmt::Display;
 use std::io::Write;
 use std::time::{SystemTime, UNIX_EPOCH};
@@ -69,6 +70,8 @@ impl LogWriter {
     /// Writes an event of the supervisor.
     pub fn event(self, event: &SupervisorEvent) {
         let level = match event {
+            // That of the pause itself is told with more weight.
+            SupervisorEvent::Stop { by, .. } if by == PAUSE => LogLevel::Info,
             SupervisorEvent::Hold { .. } => LogLevel::Debug,
             SupervisorEvent::Admitted { .. }
             | SupervisorEvent::Limits { .. }
@@ -78,8 +81,11 @@ impl LogWriter {
             | SupervisorEvent::Back { .. }
             | SupervisorEvent::Placed { .. }
             | SupervisorEvent::Clear { .. }
+            | SupervisorEvent::Resumed {}
             | SupervisorEvent::Go { .. } => LogLevel::Info,
-            SupervisorEvent::Dropped { .. } | SupervisorEvent::Silent { .. } => LogLevel::Warn,
+            SupervisorEvent::Dropped { .. } | SupervisorEvent::Silent { .. } | SupervisorEvent::Paused { .. } => {
+                LogLevel::Warn
+            }
             SupervisorEvent::Standstill { .. }
             | SupervisorEvent::Alarm { .. }
             | SupervisorEvent::Unplaced { .. }

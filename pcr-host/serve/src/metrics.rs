@@ -2,7 +2,7 @@
 
 use crate::bridge_status::BridgeStatus;
 use crate::robot::SupervisedRobot;
-use crate::supervisor::Supervisor;
+use crate::supervisor::{PauseAbility, Supervisor};
 use serde::Serialize;
 use std::fmt::Write;
 use std::time::Duration;
@@ -82,7 +82,12 @@ pub(crate) fn text(supervisor: &Supervisor, latency: &LatencyHistogram, bridge: 
         ("robots", "gauge", "Robots.", census.robots),
         ("robots_waiting", "gauge", "Robots whose mission is not admitted yet.", census.waiting),
         ("robots_alarmed", "gauge", "Robots that are not where they may be.", census.alarmed),
-        ("robots_stopped", "gauge", "Robots that had to stop for one of these, or for a closed area.", census.stopped),
+        (
+            "robots_stopped",
+            "gauge",
+            "Robots that had to stop for one of these, for a closed area, or for a pause.",
+            census.stopped,
+        ),
         ("robots_silent", "gauge", "Robots that are not heard.", census.silent),
         ("regions", "gauge", "Collision regions of all paths.", supervisor.orders().ecm().len() as u64),
     ] {
@@ -103,6 +108,7 @@ pub(crate) fn text(supervisor: &Supervisor, latency: &LatencyHistogram, bridge: 
     of_robots(&mut text, supervisor);
     of_absent(&mut text, supervisor);
     of_closures(&mut text, supervisor);
+    of_pause(&mut text, supervisor);
     if let Some(bridge) = bridge {
         of_bridge(&mut text, bridge);
     }
@@ -116,9 +122,11 @@ fn of_robots(text: &mut String, supervisor: &Supervisor) {
     let gauges: [GaugeOfRobots; 4] = [
         ("waiting", "Whether its mission is not admitted yet.", |robot| robot.waiting.is_some()),
         ("alarmed", "Whether it is not where it may be.", |robot| robot.alarm.is_some()),
-        ("stopped", "Whether it has to stop for one that is not where it may be, or for a closed area.", |robot| {
-            robot.stopped.is_some()
-        }),
+        (
+            "stopped",
+            "Whether it has to stop for one that is not where it may be, for a closed area, or for a pause.",
+            |robot| robot.stopped.is_some(),
+        ),
         ("silent", "Whether it is not heard.", |robot| robot.silent),
     ];
     for (name, help, is) in gauges {
@@ -157,6 +165,18 @@ fn of_closures(text: &mut String, supervisor: &Supervisor) {
     for area in supervisor.closures() {
         let waits = supervisor.robots().iter().filter(|robot| robot.closure.as_ref() == Some(&area.name)).count();
         let _ = writeln!(text, "{name}{{closure=\"{}\"}} {waits}", escaped(&area.name));
+    }
+}
+
+/// Whether the fleet is paused, and who does not know how to.
+fn of_pause(text: &mut String, supervisor: &Supervisor) {
+    let (name, is_paused) = ("pcr_fleet_paused", u8::from(supervisor.is_paused()));
+    let _ = writeln!(text, "# HELP {name} Whether the whole fleet is paused.\n# TYPE {name} gauge\n{name} {is_paused}");
+    let name = "pcr_vehicle_unpausable";
+    let help = "1: its factsheet does not name startPause and stopPause as instant actions.";
+    let _ = writeln!(text, "# HELP {name} {help}\n# TYPE {name} gauge");
+    for vehicle in supervisor.unpausable(PauseAbility::Unable) {
+        let _ = writeln!(text, "{name}{{robot=\"{}\"}} 1", escaped(vehicle));
     }
 }
 

@@ -132,7 +132,7 @@ pub fn answer(supervisor: &Supervisor, question: &Query, now: f64) -> Result<Val
         }
         Query::Robots { robot: None } => {
             let views: Vec<RobotView<'_>> = robots.iter().map(|robot| RobotView::new(supervisor, robot, now)).collect();
-            Ok(json!({ "robots": views, "away": supervisor.away() }))
+            Ok(json!({ "robots": views, "away": supervisor.away(), "paused": supervisor.pause_reason() }))
         }
         Query::Holds {} => {
             let hold = |robot: &SupervisedRobot| {

@@ -9,6 +9,7 @@ mod alarms;
 mod authority;
 mod closures;
 mod deadlock_report;
+mod fleet_pause;
 #[cfg(test)]
 mod outline_tests;
 mod positions;
@@ -18,6 +19,7 @@ mod robot_notes;
 pub use absence::{StandingPlace, UnplacedVehicle};
 pub use admission::{AdmissionResult, MissionRequest};
 pub use closures::ClosureImpact;
+pub use fleet_pause::{PAUSE, PauseAbility, PauseImpact};
 pub use positions::PositionReport;
 pub use restore::JournalError;
 
@@ -127,6 +129,10 @@ pub struct Supervisor {
     closures: BTreeMap<String, closures::ClosedPath>,
     /// A number that changes whenever an area is closed or opened.
     closure_revision: u64,
+    /// Whether the whole fleet is paused.
+    paused: bool,
+    /// Which vehicles do not say that they can be paused.
+    pause_abilities: BTreeMap<String, PauseAbility>,
     /// Names of vehicles that may be away without being here.
     expected: BTreeSet<String>,
     /// Highest path number of any removed robot. New robots get higher numbers, so late messages of a removed robot with the same name are
@@ -170,6 +176,8 @@ impl Supervisor {
             unplaced: BTreeMap::new(),
             closures: BTreeMap::new(),
             closure_revision: 0,
+            paused: false,
+            pause_abilities: BTreeMap::new(),
             expected: BTreeSet::new(),
             spent: 0,
             begun: None,
@@ -259,8 +267,8 @@ impl Supervisor {
         if name.is_empty() || label(name) != name {
             return Err(RequestError::invalid("the name of a robot is 1 to 200 printable characters"));
         }
-        if self.closures.contains_key(name) {
-            return Err(RequestError::invalid("a closed area has this name"));
+        if self.closures.contains_key(name) || name == PAUSE {
+            return Err(RequestError::invalid("a closed area, or the pause of the fleet, has this name"));
         }
         let abilities = abilities.checked().map_err(RequestError::invalid)?;
         let returned = self.is_away(name);

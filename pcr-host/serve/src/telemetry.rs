@@ -2,8 +2,9 @@
 
 use crate::event::SupervisorEvent;
 use crate::metrics::LatencyHistogram;
+use crate::supervisor::PAUSE;
 use serde_json::{Value, json};
-use std::collections::VecDeque;
+use std::collections::{BTreeSet, VecDeque};
 use std::time::Instant;
 
 /// Number of events that are kept.
@@ -16,12 +17,14 @@ pub struct Telemetry {
     /// Latency of requests.
     pub(crate) latency: LatencyHistogram,
     events: VecDeque<(f64, String)>,
+    /// Robots that were told to stop because the fleet is paused.
+    paused: BTreeSet<String>,
 }
 
 impl Telemetry {
     /// An empty board of a supervisor whose time began then.
     pub fn new(begin: Instant) -> Self {
-        Self { begin, latency: LatencyHistogram::default(), events: VecDeque::new() }
+        Self { begin, latency: LatencyHistogram::default(), events: VecDeque::new(), paused: BTreeSet::new() }
     }
 
     /// The supervisor's time at a moment \[s\]; 0 for one before it began.
@@ -31,7 +34,7 @@ impl Telemetry {
 
     /// Stores an event, unless it is a hold.
     pub fn note(&mut self, now: f64, event: &SupervisorEvent) {
-        let robot = event.robot();
+        let robot = event.robot().unwrap_or_default();
         let text = match event {
             SupervisorEvent::Hold { .. } => return,
             SupervisorEvent::Admitted { mission, length, .. } => format!("{robot} has {mission}, {length:.1} m"),
@@ -53,6 +56,14 @@ impl Telemetry {
             SupervisorEvent::Standstill { since, why, .. } => format!("no progress for {since:.0} s: {why}"),
             SupervisorEvent::Alarm { .. } => format!("{robot} is not where it may be"),
             SupervisorEvent::Clear { .. } => format!("{robot} is where it may be again"),
+            SupervisorEvent::Paused { why } => why.clone(),
+            SupervisorEvent::Resumed {} => "the fleet goes on".to_owned(),
+            // All of them would take the place of everything else.
+            SupervisorEvent::Stop { by, .. } if by == PAUSE => {
+                self.paused.insert(robot.to_owned());
+                return;
+            }
+            SupervisorEvent::Go { .. } if self.paused.remove(robot) => return,
             SupervisorEvent::Stop { by, .. } => format!("{robot} has to stop for {by}"),
             SupervisorEvent::Go { .. } => format!("{robot} may go on"),
         };

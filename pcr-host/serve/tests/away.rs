@@ -47,7 +47,7 @@ fn restarted(disc: &Disc) -> Supervisor {
 
 fn names(events: &[SupervisorEvent]) -> Vec<String> {
     let kind = |event| serde_json::to_value(event).unwrap()["event"].as_str().unwrap().to_owned();
-    events.iter().map(|event| format!("{} {}", kind(event), event.robot())).collect()
+    events.iter().map(|event| format!("{} {}", kind(event), event.robot().unwrap_or_default())).collect()
 }
 
 #[test]

@@ -12,6 +12,7 @@ mod kills;
 mod lines;
 mod office;
 mod overtaken;
+mod pauses;
 mod runs;
 mod sockets;
 mod stops;

@@ -1,6 +1,7 @@
 //! Random fleets: nobody touches anybody, whatever happens to messages, robots and the supervisor; and everybody arrives.
 
 use crate::world::{Trouble, World};
+use pcr_serve::event::SupervisorEvent;
 
 const SEEDS: u64 = if cfg!(debug_assertions) { 6 } else { 24 };
 
@@ -56,4 +57,48 @@ fn fleets_with_messages_lost_late_and_repeated() {
 #[test]
 fn fleets_whose_supervisor_is_restarted() {
     runs(Trouble { lost: 0.2, late: 3.0, stops: 0.002 }, 0.01);
+}
+
+/// A person pauses the fleet again and again, also while the supervisor is restarted: nobody is granted anything meanwhile, all stand after they have
+/// braked and their messages have come, and all go on.
+#[test]
+fn fleets_that_are_paused_and_resumed() {
+    let (mut pauses, mut missions) = (0, 0);
+    for seed in 0..SEEDS {
+        let mut world = World::new(seed, 2 + (seed % 9) as usize, Trouble { lost: 0.2, late: 1.0, stops: 0.0 });
+        while world.now < 120.0 {
+            let until = world.now + world.dice().uniform(1.0, 20.0);
+            while world.now < until {
+                world.step();
+            }
+            world.supervisor.pause().unwrap();
+            let (begin, until) = (world.now, world.now + world.dice().uniform(1.0, 20.0));
+            while world.now < until {
+                let events = world.step();
+                let grants = |event: &&SupervisorEvent| {
+                    matches!(
+                        event,
+                        SupervisorEvent::Hold { .. } | SupervisorEvent::Admitted { .. } | SupervisorEvent::Go { .. }
+                    )
+                };
+                assert_eq!(events.iter().find(grants), None, "seed {seed}");
+                let is_braked = world.now > begin + 8.0;
+                assert!(!is_braked || world.vehicles.iter().all(|vehicle| vehicle.speed == 0.0), "seed {seed}");
+                if world.dice().unit() < 0.02 {
+                    world.restart();
+                }
+            }
+            assert!(world.supervisor.resume().unwrap(), "seed {seed}");
+            pauses += 1;
+        }
+        world.open = false;
+        while !world.vehicles.iter().all(|vehicle| vehicle.has_arrived()) {
+            world.step();
+            assert!(world.now < 1200.0, "seed {seed}: not all arrive");
+        }
+        world.certify();
+        missions += world.vehicles.iter().map(|vehicle| vehicle.missions).sum::<u32>();
+    }
+    println!("{pauses} pauses, {missions} missions");
+    assert!(pauses > 4 * SEEDS && missions > 10 * SEEDS as u32, "{pauses} pauses, {missions} missions");
 }

@@ -71,7 +71,7 @@ pub(crate) struct Vehicle {
     pub(crate) path: u64,
     /// Where it is on the last one \[m\], and its speed \[m/s\].
     pub(crate) at: f64,
-    speed: f64,
+    pub(crate) speed: f64,
     pub(crate) hold: f64,
     stopped: bool,
     doubt: [f64; 2],
@@ -426,8 +426,10 @@ impl World {
             if is_hold && self.dice.unit() < self.trouble.lost {
                 continue;
             }
+            // What is about all is for people.
+            let Some(name) = event.robot() else { continue };
             let admitted = matches!(event, SupervisorEvent::Admitted { .. });
-            let robot = self.supervisor.robot(event.robot()).unwrap();
+            let robot = self.supervisor.robot(name).unwrap();
             let course = admitted.then(|| (robot.origin, robot.course.clone()));
             self.post(Mail::Event(event, course));
         }
@@ -466,7 +468,7 @@ impl World {
     }
 
     fn hear(&mut self, event: &SupervisorEvent, course: Option<(f64, OwnedPath)>) {
-        let vehicle = self.vehicles.iter_mut().find(|vehicle| vehicle.name == event.robot()).unwrap();
+        let vehicle = self.vehicles.iter_mut().find(|vehicle| Some(vehicle.name.as_str()) == event.robot()).unwrap();
         match event {
             SupervisorEvent::Admitted { path, .. } => {
                 let (origin, course) = course.unwrap();

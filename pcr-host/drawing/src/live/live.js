@@ -173,9 +173,9 @@ function show() {
   }
   const events = $("events"), texts = state.events.slice(-30).reverse().map(({ time, text }) => `${time.toFixed(1)} s: ${text}`);
   if (events.firstChild?.textContent !== texts[0]) events.replaceChildren(...texts.map((text) => Object.assign(document.createElement("li"), { textContent: text })));
-  const away = state.away.filter((name) => !known.includes(name)), waits = [...state.unplaced, ...state.closures.map(({ closure }) => `${closure} is closed`), ...away.map((name) => `${name} is away`)];
+  const away = state.away.filter((name) => !known.includes(name)), waits = [...(state.paused ? [state.paused] : []), ...state.unplaced, ...state.closures.map(({ closure }) => `${closure} is closed`), ...away.map((name) => `${name} is away`)];
   if ($("waits").textContent !== waits.join("; ")) $("waits").textContent = waits.join("; ");
-  $("waits").className = state.unplaced.length ? "bad" : "";
+  $("waits").className = state.paused || state.unplaced.length ? "bad" : "";
   since ??= { now: state.now, admitted: state.counts.admitted };
   const hours = (state.now - since.now) / 3600, rate = hours > 0.002 ? `, ${((state.counts.admitted - since.admitted) / hours).toFixed(0)} missions an hour` : "";
   $("summary").textContent = `${layout.name ? layout.name + ": " : ""}${known.length} robots, ${state.counts.admitted} missions admitted${rate}, ${state.counts.alarms} ${state.counts.alarms === 1 ? "alarm" : "alarms"}`;

@@ -258,6 +258,10 @@ impl Supervisor {
         }
         let shifted = |length: f64| (length - dropped).max(0.0).min(course.length());
         let (at, told) = (shifted(robot.arc_length), shifted(robot.notified_limit));
+        if let Some(why) = self.pause_reason() {
+            self.counts.refused += 1;
+            return Ok(Some(AdmissionResult::Waiting { by: None, why }));
+        }
         if let Some(closure) = self.closed_on(&course, &body, at, told) {
             let why = format!("{closure} is closed");
             self.counts.refused += 1;

@@ -1,6 +1,6 @@
 //! Robots that are not where they may be: all others keep away from everywhere that such a robot can have reached.
 
-use super::{StandingPlace, Supervisor, fleet};
+use super::{PAUSE, StandingPlace, Supervisor, fleet};
 use crate::event::SupervisorEvent;
 use crate::owned_path::{OwnedPath, StartPose};
 use crate::robot::{Alarm, ROOM, SupervisedRobot};
@@ -57,6 +57,7 @@ impl Supervisor {
         self.closed_areas(&mut limits);
         self.hazards = self.robots.iter().any(|robot| robot.alarm.is_some())
             || !self.closures.is_empty()
+            || self.paused
             || self.unplaced.values().any(|vehicle| !vehicle.places.is_empty());
         for (place, limit) in limits.iter().enumerate() {
             let robot = &self.robots[place];
@@ -69,6 +70,8 @@ impl Supervisor {
                 LimitCause::Unplaced(by) => self.unplaced.keys().nth(by).cloned(),
                 LimitCause::Closed(by) => self.closures.keys().nth(by).cloned(),
             });
+            // That one is to be known first: it has to go on being kept away from when the pause ends.
+            let by = by.or_else(|| (self.paused && !robot.away).then(|| PAUSE.to_owned()));
             // It waits there once it has come up to it.
             let closure = match (limit.arc_length, limit.by) {
                 (Some(at), LimitCause::Closed(by)) if by_it(robot, at) => self.closures.keys().nth(by).cloned(),

@@ -5,8 +5,8 @@
 //! drives on. Whoever holds authority into it keeps that, and is stopped: if it comes to rest before the area it waits there, and if it cannot,
 //! it drives through as soon as it is in it.
 
-use super::Supervisor;
 use super::alarms::{AlarmLimit, LimitCause};
+use super::{PAUSE, Supervisor};
 use crate::closed_area::{ClosedArea, SpeedLimit};
 use crate::event::SupervisorEvent;
 use crate::journal_entry::JournalEntry;
@@ -44,6 +44,9 @@ impl ClosedPath {
     pub(super) fn new(area: ClosedArea) -> Result<Self, RequestError> {
         if area.name.is_empty() || label(&area.name) != area.name {
             return Err(RequestError::invalid("closure: the name of an area is 1 to 200 printable characters"));
+        }
+        if area.name == PAUSE {
+            return Err(RequestError::invalid("closure: the pause of the fleet has this name"));
         }
         if !(area.radius > 0.0 && area.radius <= FAR) {
             return Err(RequestError::invalid(format!("radius: above 0, up to {FAR} m is allowed")));

@@ -36,6 +36,7 @@ struct RestoredState {
     spent: u64,
     away: BTreeSet<String>,
     closures: BTreeMap<String, ClosedPath>,
+    paused: bool,
 }
 
 impl RestoredState {
@@ -102,6 +103,7 @@ impl RestoredState {
                 self.closures.insert(closed.area.name.clone(), closed);
             }
             JournalEntry::Opened { closure } => _ = self.closures.remove(&closure),
+            JournalEntry::Paused { paused } => self.paused = paused,
             JournalEntry::Alarm { robot, alarm } => self.robot(&robot)?.alarm = alarm,
         }
         Ok(())
@@ -123,7 +125,7 @@ impl Supervisor {
         entries.into_iter().try_for_each(|entry| state.take(entry))?;
         let mut own = Self::new(settings, keeper);
         (own.layout, own.spent, own.away) = (state.layout, state.spent, state.away);
-        own.closures = state.closures;
+        (own.closures, own.paused) = (state.closures, state.paused);
         if own.spent >= MOST {
             return Err(JournalError("a number of a path that cannot be".into()));
         }
@@ -141,6 +143,7 @@ impl Supervisor {
         let count = own.robots.len();
         (own.unsaved, own.reaches, own.hazards) = (vec![false; count], vec![CheckState::EMPTY; count], true);
         own.order(kept)?;
+        own.note_pause();
         Ok(own)
     }
 
@@ -206,7 +209,8 @@ impl Supervisor {
         let spent = (self.spent > 0).then_some(Ok(JournalEntry::Spent { path: self.spent }));
         let away = self.away.iter().map(|name| Ok(JournalEntry::Away { robot: name.clone(), away: true }));
         let closed = self.closures().map(|area| Ok(JournalEntry::Closed(area.clone())));
-        layout.chain(spent).chain(robots).chain(away).chain(closed).collect()
+        let paused = self.paused.then_some(Ok(JournalEntry::Paused { paused: true }));
+        layout.chain(spent).chain(robots).chain(away).chain(closed).chain(paused).collect()
     }
 }
 

@@ -87,6 +87,8 @@ pub struct Vda5050Bridge {
     noticed_at: f64,
     /// Which vehicles are away, or not, by their configuration, until the supervisor knows.
     declarations: Option<Vec<(String, bool)>>,
+    /// Whether there are factsheets, or vehicles, of which the supervisor does not know.
+    has_factsheets: bool,
 }
 
 /// Time that a vehicle has to say where it stands, before that is told \[s\].
@@ -135,6 +137,7 @@ impl Vda5050Bridge {
             noticed: BTreeSet::new(),
             noticed_at: f64::NEG_INFINITY,
             declarations: Some(declarations),
+            has_factsheets: true,
             looked: f64::NEG_INFINITY,
         })
     }
@@ -220,9 +223,11 @@ impl Vda5050Bridge {
             TopicKind::Connection => {
                 lane.connection(payload, limits, is_third, came).inspect(|()| lane.pass_on(kind, is_third, payload))
             }
-            TopicKind::Factsheet => lane
-                .factsheet(supervisor, payload, limits, is_third, came)
-                .inspect(|()| lane.pass_on(kind, is_third, payload)),
+            TopicKind::Factsheet => {
+                self.has_factsheets = true;
+                lane.factsheet(supervisor, payload, limits, is_third, came)
+                    .inspect(|()| lane.pass_on(kind, is_third, payload))
+            }
             TopicKind::InstantActions => lane.instant_actions(supervisor, payload, limits, is_third, now),
             TopicKind::Order => {
                 lane.order(supervisor, payload, limits, is_third, now);
@@ -292,7 +297,10 @@ impl Vda5050Bridge {
             None => (NoticeKind::Closed, [area.name.clone(), "is closed".to_owned()]),
             Some(speed) => (NoticeKind::Limited, [area.name.clone(), format!("limits the speed to {speed} m/s")]),
         });
-        let notices: Vec<(NoticeKind, [String; 2])> = unplaced.chain(closed).collect();
+        let paused = supervisor.pause_reason();
+        let paused = paused.iter().filter_map(|why| why.split_once(" is "));
+        let paused = paused.map(|(who, why)| (NoticeKind::Paused, [who.to_owned(), format!("is {why}")]));
+        let notices: Vec<(NoticeKind, [String; 2])> = paused.chain(unplaced).chain(closed).collect();
         if notices != self.notices && now.is_finite() && now >= self.noticed_at + PAUSE {
             self.noticed_at = now;
             for (place, lane) in self.lanes.iter_mut().enumerate() {
@@ -361,6 +369,7 @@ impl Vda5050Bridge {
         self.places = self.lanes.iter().enumerate().map(|(place, lane)| (lane.profile().key.clone(), place)).collect();
         self.touched = (0..self.lanes.len()).collect();
         self.noticed.clone_from(&self.touched);
+        self.has_factsheets = true;
         (self.seen, self.large) = (SupervisorSnapshot::default(), BTreeSet::new());
         // A declaration that was not made yet is in the new list, too, or was for one that was left out.
         let mut all = self.declarations.take().unwrap_or_default();
@@ -393,6 +402,10 @@ impl Vda5050Bridge {
         for lane in &mut self.lanes {
             lane.follow_absence(supervisor);
         }
+        if std::mem::take(&mut self.has_factsheets) {
+            let ability = |lane: &VehicleAdapter| Some((lane.name().to_owned(), lane.pause_ability()?));
+            supervisor.set_pause_abilities(self.lanes.iter().filter_map(ability).collect());
+        }
     }
 
     /// Returns why no vehicle is released anything, if so.
@@ -421,7 +434,7 @@ impl Vda5050Bridge {
     /// Takes events of the supervisor, without any messages to vehicles yet.
     pub(crate) fn on_events(&mut self, events: &[SupervisorEvent]) {
         for event in events {
-            if let Some(&place) = key(event.robot()).and_then(|key| self.places.get(&key)) {
+            if let Some(&place) = event.robot().and_then(key).and_then(|key| self.places.get(&key)) {
                 self.touched.insert(place);
                 self.lanes[place].on_event(event);
             }

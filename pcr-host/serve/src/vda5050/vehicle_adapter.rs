@@ -25,7 +25,7 @@ mod vehicle_messages;
 pub use job::ActiveOrder;
 
 use crate::robot::RobotTraits;
-use crate::supervisor::{JournalError, StandingPlace, Supervisor};
+use crate::supervisor::{JournalError, PauseAbility, StandingPlace, Supervisor};
 use interim::Interim;
 use journal_notes::noted;
 use pause::VehiclePauses;
@@ -51,6 +51,8 @@ pub(crate) enum NoticeKind {
     Closed,
     /// An area in which the speed is limited.
     Limited,
+    /// The pause of the whole fleet.
+    Paused,
 }
 
 /// The configuration of a vehicle.
@@ -141,6 +143,8 @@ pub struct VehicleAdapter {
     ahead: Option<manager_state::CachedRemaining>,
     /// What the vehicle needs, according to its own data: the radius of its disc, or how far it reaches beyond its outline \[m\].
     needs: Option<f64>,
+    /// Why it is not certain that it can be paused; `None`: its factsheet says that it can.
+    pause_ability: Option<PauseAbility>,
     /// Why its position is ignored: it is on another map than the other vehicles.
     elsewhere: Option<String>,
     /// Whether it was seated by a state that may be from before the start.
@@ -189,6 +193,7 @@ impl VehicleAdapter {
             posts,
             ahead: None,
             needs,
+            pause_ability: Some(PauseAbility::Unknown),
             elsewhere: None,
             is_doubtful,
             is_away: false,
@@ -231,6 +236,11 @@ impl VehicleAdapter {
             Some(_) => format!("the vehicle reaches {needs:.3} m beyond its outline"),
             None => format!("the vehicle needs a disc of {needs} m, not {own}"),
         })
+    }
+
+    /// Why it is not certain that it can be paused; `None` if it can.
+    pub fn pause_ability(&self) -> Option<PauseAbility> {
+        self.pause_ability
     }
 
     /// Takes what is to be told in the log.

@@ -150,7 +150,7 @@ impl SimulatedVehicle {
             "physicalParameters": { "speedMin": 0.0, "speedMax": can.speed, "accelerationMax": can.acceleration,
                 "decelerationMax": can.acceleration, "heightMax": 1.0, "width": width, "length": length },
             "protocolLimits": { "maxStringLens": {}, "maxArrayLens": {}, "timing": { "minOrderInterval": 0.0, "minStateInterval": 0.0 } },
-            "protocolFeatures": { "optionalParameters": [], "agvActions": [] },
+            "protocolFeatures": { "optionalParameters": [], "agvActions": instant_actions(&json!({})) },
             "agvGeometry": { "envelopes2d": [ { "set": "contour", "polygonPoints": self.contour() } ] },
             "loadSpecification": {},
         })
@@ -168,11 +168,23 @@ impl SimulatedVehicle {
                 "maximumDeceleration": can.acceleration, "minimumHeight": 1.0, "maximumHeight": 1.0, "width": width, "length": length },
             "protocolLimits": { "maximumStringLengths": {}, "maximumArrayLengths": {},
                 "timing": { "minimumOrderInterval": 0.0, "minimumStateInterval": 0.0 } },
-            "protocolFeatures": { "optionalParameters": [], "mobileRobotActions": [] },
+            "protocolFeatures": { "optionalParameters": [], "mobileRobotActions": instant_actions(&json!({ "pauseAllowed": false, "cancelAllowed": false })) },
             "mobileRobotGeometry": { "envelopes2d": [ { "envelope2dId": "contour", "vertices": self.contour() } ] },
             "loadSpecification": {},
         })
     }
+}
+
+/// The instant actions that it knows, as a factsheet lists them, each with these fields.
+fn instant_actions(more: &Value) -> Vec<Value> {
+    let action = |kind: &str| {
+        let mut action = json!({ "actionType": kind, "actionScopes": ["INSTANT"] });
+        if let (Value::Object(action), Value::Object(more)) = (&mut action, more) {
+            action.extend(more.clone());
+        }
+        action
+    };
+    ["startPause", "stopPause", "stateRequest", "factsheetRequest", "cancelOrder"].map(action).into()
 }
 
 fn second() -> Value {

@@ -14,6 +14,7 @@ mod long;
 mod maps;
 mod outlines;
 mod pair;
+mod pauses;
 mod puppet;
 mod refusals;
 mod restarts;

@@ -61,11 +61,14 @@ impl VehicleAdapter {
     pub(super) fn notice_errors(&self) -> impl Iterator<Item = ErrorEntry> {
         let error = |(kind, [name, why]): &(NoticeKind, [String; 2])| {
             let (kind, reference) = match kind {
-                NoticeKind::Unplaced => ("waitsForVehicle", "vehicle"),
-                NoticeKind::Closed => ("closed", "closure"),
-                NoticeKind::Limited => ("limited", "closure"),
+                NoticeKind::Unplaced => ("waitsForVehicle", Some("vehicle")),
+                NoticeKind::Closed => ("closed", Some("closure")),
+                NoticeKind::Limited => ("limited", Some("closure")),
+                NoticeKind::Paused => ("paused", None),
             };
-            ErrorEntry::warning(kind, format!("{name} {why}"), &[(reference, name)])
+            let references: Vec<(&str, &str)> =
+                reference.map(|reference| (reference, name.as_str())).into_iter().collect();
+            ErrorEntry::warning(kind, format!("{name} {why}"), &references)
         };
         self.notices.iter().map(error)
     }

@@ -3,7 +3,7 @@
 use super::super::remaining_elements::{EdgeStateOut, NodeStateOut};
 use super::recency::Recency;
 use super::{ActiveOrder, NEEDS, OutboundMessage, Recipient, SendCondition, VehicleAdapter};
-use crate::supervisor::Supervisor;
+use crate::supervisor::{PauseAbility, Supervisor};
 use pcr_formats::import::{self, ImportOptions, Warnings};
 use pcr_formats::vda5050::decode::{self, DecodeError, MessageLimits};
 use pcr_formats::vda5050::header::MessageHeader;
@@ -155,6 +155,7 @@ impl VehicleAdapter {
         if self.newest.entry(TopicKind::Factsheet).or_default().take(&message.header, now, |_| false) == Recency::Late {
             return Ok(());
         }
+        self.pause_ability = pause_ability(&message);
         let text = String::from_utf8_lossy(payload);
         let vehicle = import::vehicle(&text, &ImportOptions::default(), &mut Warnings::default());
         let vehicle = vehicle.map_err(|error| DecodeError::new("", error))?;
@@ -212,4 +213,21 @@ impl VehicleAdapter {
         }
         state
     }
+}
+
+/// Why it is not certain from a factsheet that a vehicle can be paused; `None`: it can.
+fn pause_ability(message: &Factsheet) -> Option<PauseAbility> {
+    let features = message.rest.get("protocolFeatures");
+    let list = features.and_then(|features| features.get("agvActions").or_else(|| features.get("mobileRobotActions")));
+    // A vehicle that knew none could not even cancel an order: its list was not filled in.
+    let Some(list) = list.and_then(Value::as_array).filter(|list| !list.is_empty()) else {
+        return Some(PauseAbility::Unknown);
+    };
+    let knows = |kind: &str| {
+        list.iter().any(|action| {
+            let scopes = action.get("actionScopes").and_then(Value::as_array);
+            action["actionType"] == kind && scopes.is_none_or(|scopes| scopes.iter().any(|scope| scope == "INSTANT"))
+        })
+    };
+    (!(knows("startPause") && knows("stopPause"))).then_some(PauseAbility::Unable)
 }

@@ -5,7 +5,7 @@ use super::journal_notes::noted;
 use super::recency::LATEST;
 use super::release::AGAIN;
 use crate::robot::SupervisedRobot;
-use crate::supervisor::{JournalError, Supervisor};
+use crate::supervisor::{JournalError, PAUSE, Supervisor};
 use pcr_formats::vda5050::decode::DecodeError;
 use pcr_formats::vda5050::decode::{self, MessageLimits};
 use pcr_formats::vda5050::messages::{Action, InstantActions};
@@ -100,6 +100,8 @@ impl VehicleAdapter {
                 self.pauses.asked = None;
             }
             Some(asked) if asked.stops == stops && (said == stops || now - asked.at < AGAIN) => {}
+            // It does not say whether it is paused.
+            Some(asked) if asked.stops && stops && !self.tells_pauses() && self.has_done(&asked.id) => {}
             _ => self.ask_pause(stops, ends, now),
         }
     }
@@ -139,7 +141,9 @@ impl VehicleAdapter {
                     } else {
                         format!("is not passed on: {MOST} of them wait already")
                     };
-                    let why = format!("it stands for {by}; {:?} {what}", action.action_id);
+                    let who =
+                        if by == PAUSE { "the fleet is paused".to_owned() } else { format!("it stands for {by}") };
+                    let why = format!("{who}; {:?} {what}", action.action_id);
                     refusal.get_or_insert(DecodeError::new(format!("actions[{k}]"), why));
                     if !is_held && held.len() < MOST {
                         held.push(action);
@@ -191,6 +195,10 @@ impl VehicleAdapter {
     /// Stores the pauses in the journal.
     pub(super) fn note_pauses(&self, supervisor: &mut Supervisor) {
         self.note(supervisor, NOTE, &self.pauses.kept);
+    }
+
+    fn tells_pauses(&self) -> bool {
+        self.state.as_ref().is_some_and(|state| state.rest.get("paused").is_some_and(Value::is_boolean))
     }
 
     fn says_paused(&self) -> bool {
