@@ -13,7 +13,7 @@ use crate::telemetry::Telemetry;
 use serde_json::json;
 use std::io::{self, Read, Write};
 use std::net::{Ipv4Addr, Ipv6Addr};
-use std::sync::{Arc, Mutex, PoisonError};
+use std::sync::{Arc, Mutex, OnceLock, PoisonError};
 use std::time::{Duration, Instant};
 
 /// Largest length of a request \[bytes\].
@@ -91,7 +91,23 @@ pub fn listen(handle: &ServerHandle, listener: &Listener, site: HttpContent, log
     let handle = handle.clone();
     connection_limit::each(listener, "request", MOST, log, move |stream, _| {
         // An error means that the client has gone.
-        let _ = converse(&handle, &site, stream);
+        let _ = converse(|request| answer(&handle, &site, request), stream);
+    });
+}
+
+/// The supervisor that a standby becomes, with what is then served.
+pub type LateSupervisor = Arc<OnceLock<(ServerHandle, HttpContent)>>;
+
+/// Serves for ever: that it is a standby, until there is a supervisor.
+pub fn listen_late(supervisor: &LateSupervisor, listener: &Listener, site: HttpContent, log: LogWriter) {
+    let supervisor = supervisor.clone();
+    connection_limit::each(listener, "request", MOST, log, move |stream, _| {
+        let answer = |request: &[u8]| match supervisor.get() {
+            Some((handle, site)) => answer(handle, site, request),
+            None => answer_standby(&site, request),
+        };
+        // An error means that the client has gone.
+        let _ = converse(answer, stream);
     });
 }
 
@@ -127,7 +143,7 @@ impl Write for TimedStream {
     }
 }
 
-fn converse(handle: &ServerHandle, site: &HttpContent, stream: Stream) -> io::Result<()> {
+fn converse(answer: impl Fn(&[u8]) -> Answer, stream: Stream) -> io::Result<()> {
     let mut stream = TimedStream { stream, until: Instant::now() + WITHIN };
     let mut bytes = Vec::new();
     let mut part = [0; 1024];
@@ -138,7 +154,7 @@ fn converse(handle: &ServerHandle, site: &HttpContent, stream: Stream) -> io::Re
             return respond(&mut stream, "400 Bad Request", "text/plain", "a request ends with an empty line\n", true);
         }
     }
-    let (status, kind, body) = answer(handle, site, &bytes);
+    let (status, kind, body) = answer(&bytes);
     stream.until = Instant::now() + WITHIN;
     let has_body = !bytes.starts_with(b"HEAD ");
     respond(&mut stream, status, kind, &body, has_body)
@@ -156,14 +172,23 @@ fn respond(stream: &mut TimedStream, status: &str, kind: &str, body: &str, has_b
     if has_body { stream.write_all(body.as_bytes()) } else { Ok(()) }
 }
 
-/// Status, kind and body of the answer to a request.
-pub fn answer(handle: &ServerHandle, site: &HttpContent, request: &[u8]) -> (&'static str, &'static str, String) {
-    let plain = |status, text: &str| (status, "text/plain", format!("{text}\n"));
+/// Status, kind and body of an answer.
+pub type Answer = (&'static str, &'static str, String);
+
+fn plain(status: &'static str, text: &str) -> Answer {
+    (status, "text/plain", format!("{text}\n"))
+}
+
+/// The target of a request.
+///
+/// # Errors
+/// The answer to a request that is refused.
+fn target(site: &HttpContent, request: &[u8]) -> Result<String, Answer> {
     let text = String::from_utf8_lossy(request);
     let mut lines = text.split("\r\n").take_while(|line| !line.is_empty());
     let words: Vec<&str> = lines.next().unwrap_or_default().split(' ').collect();
     let [method, target, "HTTP/1.1" | "HTTP/1.0"] = words[..] else {
-        return plain("400 Bad Request", "a request of HTTP/1.1 begins with METHOD PATH HTTP/1.1");
+        return Err(plain("400 Bad Request", "a request of HTTP/1.1 begins with METHOD PATH HTTP/1.1"));
     };
     let headers: Vec<(&str, &str)> = lines.filter_map(|line| line.split_once(':')).collect();
     let values = |name: &str| {
@@ -172,15 +197,38 @@ pub fn answer(handle: &ServerHandle, site: &HttpContent, request: &[u8]) -> (&'s
         found
     };
     if !matches!(values("host")[..], [host] if site.is_here(host)) {
-        return plain("403 Forbidden", "not under this name");
+        return Err(plain("403 Forbidden", "not under this name"));
     }
     if !["GET", "HEAD"].contains(&method) {
-        return plain("405 Method Not Allowed", "only GET and HEAD");
+        return Err(plain("405 Method Not Allowed", "only GET and HEAD"));
     }
     if values("upgrade").iter().any(|upgrade| upgrade.eq_ignore_ascii_case("websocket")) {
-        return plain("400 Bad Request", "there are no WebSockets here");
+        return Err(plain("400 Bad Request", "there are no WebSockets here"));
     }
-    let (path, query) = target.split_once('?').unwrap_or((target, ""));
+    Ok(target.to_owned())
+}
+
+/// The answer of a standby to a request.
+fn answer_standby(site: &HttpContent, request: &[u8]) -> Answer {
+    const WAITS: &str = "standby: it follows the journal, and waits for the end of the supervisor at work";
+    let target = match target(site, request) {
+        Ok(target) => target,
+        Err(refused) => return refused,
+    };
+    match target.split_once('?').map_or(target.as_str(), |(path, _)| path) {
+        "/healthz" => plain("200 OK", WAITS),
+        "/metrics" => ("200 OK", "text/plain; version=0.0.4", metrics::standby(true)),
+        _ => plain("503 Service Unavailable", WAITS),
+    }
+}
+
+/// The answer to a request.
+pub fn answer(handle: &ServerHandle, site: &HttpContent, request: &[u8]) -> Answer {
+    let target = match target(site, request) {
+        Ok(target) => target,
+        Err(refused) => return refused,
+    };
+    let (path, query) = target.split_once('?').unwrap_or((&target, ""));
     match path {
         "/" => ("200 OK", "text/html", site.page.clone()),
         // Browsers request it with every page.
@@ -227,12 +275,11 @@ pub fn answer(handle: &ServerHandle, site: &HttpContent, request: &[u8]) -> (&'s
     }
 }
 
-fn ended() -> (&'static str, &'static str, String) {
+fn ended() -> Answer {
     ("503 Service Unavailable", "text/plain", "the supervisor has ended\n".into())
 }
 
-fn map(handle: &ServerHandle, site: &HttpContent, query: &str) -> (&'static str, &'static str, String) {
-    let plain = |status, text: &str| (status, "text/plain", format!("{text}\n"));
+fn map(handle: &ServerHandle, site: &HttpContent, query: &str) -> Answer {
     let Some(draw) = site.draw else { return plain("404 Not Found", "there are no pictures") };
     // Other parameters, such as a time, are ignored; pages add them to bypass the cache.
     let name = query.split('&').find_map(|part| part.strip_prefix("robot=")).map(decoded);

@@ -18,9 +18,12 @@
 //! the file as it was stays beside it. So a program of the version before never reads entries that it does not know.
 
 mod folder_lock;
+mod follower;
+
+pub(crate) use folder_lock::FolderLock;
+pub use follower::{FollowedEntries, JournalFollower};
 
 use crate::journal_entry::{JournalEntry, JournalStore};
-use folder_lock::FolderLock;
 use std::fmt;
 use std::fs::{self, File, OpenOptions};
 use std::io::{self, ErrorKind, Read, Seek, SeekFrom, Write};
@@ -92,6 +95,23 @@ impl Journal {
     pub fn open(folder: &Path) -> io::Result<(Self, JournalContents)> {
         fs::create_dir_all(folder).map_err(of(folder))?;
         let lock = FolderLock::acquire(&folder.join("lock"))?;
+        Self::open_locked(folder, lock)
+    }
+
+    /// The lock of a folder, which is made; it is not acquired.
+    ///
+    /// # Errors
+    /// Errors of files.
+    pub(crate) fn lock_of(folder: &Path) -> io::Result<FolderLock> {
+        fs::create_dir_all(folder).map_err(of(folder))?;
+        FolderLock::open(&folder.join("lock"))
+    }
+
+    /// Opens the journal in a folder whose lock was acquired.
+    ///
+    /// # Errors
+    /// As [`Journal::open`].
+    pub(crate) fn open_locked(folder: &Path, lock: FolderLock) -> io::Result<(Self, JournalContents)> {
         let path = folder.join("journal");
         if !path.try_exists().map_err(of(&path))? {
             written(folder, HEADER)?;

@@ -13,6 +13,7 @@
 //! journal           a file of entries                                  Journal
 //! journal_writer    a journal on a thread of its own                   JournalWriter
 //! supervisor        robots, missions, positions, authorities           Supervisor
+//! standby           waits for the end of another supervisor         Standby
 //! query             queries about a fleet                              Query
 //! lines             the line protocol                                  handle
 //! line_angles       degrees in its requests
@@ -59,6 +60,7 @@ pub mod robot;
 pub mod server;
 pub mod setup_error;
 pub mod sockets;
+pub mod standby;
 pub mod supervisor;
 pub mod telemetry;
 pub mod token;

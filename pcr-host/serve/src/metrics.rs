@@ -109,10 +109,18 @@ pub(crate) fn text(supervisor: &Supervisor, latency: &LatencyHistogram, bridge: 
     of_absent(&mut text, supervisor);
     of_closures(&mut text, supervisor);
     of_pause(&mut text, supervisor);
+    text.push_str(&standby(false));
     if let Some(bridge) = bridge {
         of_bridge(&mut text, bridge);
     }
     text
+}
+
+/// Whether it waits for the end of another supervisor.
+pub(crate) fn standby(waits: bool) -> String {
+    let name = "pcr_standby";
+    let help = "Whether it waits for the end of the supervisor at work.";
+    format!("# HELP {name} {help}\n# TYPE {name} gauge\n{name} {}\n", u8::from(waits))
 }
 
 /// Name and help of a gauge, and whether it is 1 for a robot.

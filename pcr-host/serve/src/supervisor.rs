@@ -21,7 +21,7 @@ pub use admission::{AdmissionResult, MissionRequest};
 pub use closures::ClosureImpact;
 pub use fleet_pause::{PAUSE, PauseAbility, PauseImpact};
 pub use positions::PositionReport;
-pub use restore::JournalError;
+pub use restore::{JournalError, JournalState};
 
 use crate::event::{CancelCause, SupervisorEvent};
 use crate::journal_entry::{JournalEntry, JournalStore};

@@ -17,14 +17,14 @@ use std::sync::atomic::Ordering::Relaxed;
 
 const GOOD: Trouble = Trouble { lost: 0.0, late: 0.5, stops: 0.0 };
 
-fn folder(name: &str) -> PathBuf {
+pub(crate) fn folder(name: &str) -> PathBuf {
     let folder = std::env::temp_dir().join(format!("pcr-serve-{}-{name}", std::process::id()));
     let _ = std::fs::remove_dir_all(&folder);
     folder
 }
 
 /// All that others rely on: paths, how far who may go, and who goes first where.
-fn rights(supervisor: &Supervisor) -> HashMap<String, (u64, f64, Vec<StoredPrecedence>)> {
+pub(crate) fn rights(supervisor: &Supervisor) -> HashMap<String, (u64, f64, Vec<StoredPrecedence>)> {
     let robots = supervisor.robots().iter();
     let mut orders: HashMap<String, Vec<StoredPrecedence>> = HashMap::new();
     let fleet = supervisor.fleet().unwrap();
@@ -42,7 +42,7 @@ fn rights(supervisor: &Supervisor) -> HashMap<String, (u64, f64, Vec<StoredPrece
 }
 
 /// Whether what is known after a restart holds all that was told before.
-fn keeps(after: &Supervisor, before: &HashMap<String, (u64, f64, Vec<StoredPrecedence>)>, context: &str) {
+pub(crate) fn keeps(after: &Supervisor, before: &HashMap<String, (u64, f64, Vec<StoredPrecedence>)>, context: &str) {
     let now = rights(after);
     assert_eq!(now.len(), before.len(), "{context}");
     for (name, (path, granted, orders)) in before {

@@ -15,6 +15,7 @@ mod overtaken;
 mod pauses;
 mod runs;
 mod sockets;
+mod standby;
 mod stops;
 mod world;
 mod writer;

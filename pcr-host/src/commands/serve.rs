@@ -5,6 +5,7 @@ mod check;
 mod demo;
 mod listen;
 mod run;
+mod standby;
 mod threads;
 
 use super::{CliError, parse_integer, within};
@@ -32,6 +33,7 @@ Examples:
   pcr serve --journal state --listen 7070    and over TCP, with state/token
   pcr serve --journal state --page 8080      and a page: http://localhost:8080
   pcr serve --journal state --stay --broker localhost:1883 --fleet vehicles.json
+  pcr serve --journal state --stay --standby --page 8081   beside the first one
   pcr serve --demo warehouse_graph.geojson   broker, vehicles, manager and page";
 
 /// Supervise a fleet: decide how far each robot may go now
@@ -59,6 +61,9 @@ pub(super) struct ServeArgs {
     /// Do not end when standard input ends
     #[arg(long)]
     stay: bool,
+    /// Wait while another supervisor has the journal open, and take over when it ends
+    #[arg(long)]
+    standby: bool,
     /// How near to its hold a waiting robot's reported position has to come, in m [0.1; VDA 5050: 0.3]
     #[arg(long, value_name = "M", value_parser = |text: &str| within(text, 0.001, 10.0))]
     width: Option<f64>,

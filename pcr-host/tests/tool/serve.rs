@@ -656,3 +656,64 @@ fn deployment_files_start_this_program() {
         assert!(run.status == 0 && run.out.ends_with("nothing is wrong\n"), "{words:?}: {} {}", run.out, run.err);
     }
 }
+
+/// What a page answers.
+#[cfg(target_os = "linux")]
+fn page(address: &str, path: &str) -> String {
+    use std::io::{Read, Write};
+    let mut stream = std::net::TcpStream::connect(address).unwrap();
+    write!(stream, "GET {path} HTTP/1.1\r\nHost: {address}\r\n\r\n").unwrap();
+    let mut answer = String::new();
+    stream.read_to_string(&mut answer).unwrap();
+    answer
+}
+
+/// The first one is killed, and the second one goes on with what it had told, at the same socket; then a third one takes over from the second one.
+#[cfg(target_os = "linux")]
+#[test]
+fn a_standby_takes_over_when_the_supervisor_at_work_is_killed() {
+    use std::os::unix::net::UnixStream;
+    let folder = directory("standby").join("state");
+    let _ = std::fs::remove_dir_all(&folder);
+    let name = folder.to_str().unwrap();
+    let start = || Listening::start(&["--standby", "--journal", name, "--page", "0", "--listen"], Stdio::null());
+    let hello = r#"{"pcr":1,"verb":"hello"}"#.to_owned() + "\n";
+    let asks = |lines: &str| answers(UnixStream::connect(folder.join("socket")).unwrap(), &(hello.clone() + lines));
+    // Without another one it is the supervisor at once.
+    let mut at_work = start();
+    assert!(at_work.said.contains("socket="), "{}", at_work.said);
+    let said = asks(&format!("{ADD}{END}"));
+    assert_eq!(said[2]["ok"]["verdict"], "admitted", "{said:?}");
+    for round in 0..3 {
+        let mut standby = start();
+        let address = standby.value("address");
+        assert!(page(&address, "/healthz").starts_with("HTTP/1.1 200 "));
+        let ready = page(&address, "/readyz");
+        assert!(ready.starts_with("HTTP/1.1 503 ") && ready.contains("\r\n\r\nstandby: "), "{ready}");
+        assert!(page(&address, "/metrics").contains("\npcr_standby 1\n"));
+        let line = standby.log.find(|line| line.contains("msg=\"standby: ")).unwrap();
+        assert!(line.contains("robots=\"1\""), "{line}");
+        let told = asks(&format!("{ROBOTS}{END}"))[1]["ok"]["robots"][0].clone();
+        // The one at work has the socket.
+        at_work.child.kill().unwrap();
+        at_work.child.wait().unwrap();
+        assert!(standby.log.any(|line| line.contains("it takes over")), "round {round}");
+        assert!(
+            standby.log.any(|line| line.contains("msg=\"listening\"") && line.contains("socket=")),
+            "round {round}"
+        );
+        let knows = asks(&format!("{ROBOTS}{END}"))[1]["ok"]["robots"][0].clone();
+        assert_eq!([&knows["mission"], &knows["path"]], [&told["mission"], &told["path"]]);
+        assert!(page(&address, "/readyz").starts_with("HTTP/1.1 200 "));
+        assert!(page(&address, "/metrics").contains("\npcr_standby 0\n"));
+        at_work = standby;
+    }
+    // One that waits is ended by what ends others, too.
+    let mut standby = start();
+    assert!(standby.log.any(|line| line.contains("msg=\"standby: ")));
+    let kill = std::process::Command::new("kill").args(["-TERM", &standby.child.id().to_string()]).status().unwrap();
+    assert!(kill.success());
+    assert_eq!(standby.child.wait().unwrap().code(), Some(0));
+    let alone = run(&["serve", "--log", "error", "--stay", "--standby"]).failed(2);
+    assert!(alone.contains("add --journal DIR"), "{alone}");
+}

@@ -6,25 +6,45 @@ use std::io::{self, ErrorKind};
 use std::path::{Path, PathBuf};
 
 #[derive(Debug)]
-pub(super) struct FolderLock(File, PathBuf);
+pub(crate) struct FolderLock(File, PathBuf);
 
 impl FolderLock {
     /// # Errors
     /// [`ErrorKind::WouldBlock`] if another process has it, and other errors of files.
     pub(super) fn acquire(path: &Path) -> io::Result<Self> {
+        let own = Self::open(path)?;
+        match own.try_acquire()? {
+            true => Ok(own),
+            false => Err(io::Error::new(ErrorKind::WouldBlock, "another supervisor has it open")),
+        }
+    }
+
+    /// A lock that is not acquired yet.
+    ///
+    /// # Errors
+    /// Errors of files.
+    pub(super) fn open(path: &Path) -> io::Result<Self> {
         let file = OpenOptions::new().write(true).create(true).truncate(false).open(path).map_err(of(path))?;
-        file.try_lock().map_err(|error| match error {
-            TryLockError::WouldBlock => io::Error::new(ErrorKind::WouldBlock, "another supervisor has it open"),
-            TryLockError::Error(error) => error,
-        })?;
         Ok(Self(file, path.to_owned()))
+    }
+
+    /// Acquires it if no other process has it, and returns whether it did.
+    ///
+    /// # Errors
+    /// Errors of files.
+    pub(crate) fn try_acquire(&self) -> io::Result<bool> {
+        match self.0.try_lock() {
+            Ok(()) => Ok(true),
+            Err(TryLockError::WouldBlock) => Ok(false),
+            Err(TryLockError::Error(error)) => Err(of(&self.1)(error)),
+        }
     }
 
     /// Whether the locked file is still the one with its name. Otherwise another process may have locked another one.
     ///
     /// # Errors
     /// [`ErrorKind::NotFound`] if it was removed or replaced, and other errors of files.
-    pub(super) fn check(&self) -> io::Result<()> {
+    pub(crate) fn check(&self) -> io::Result<()> {
         #[cfg(unix)]
         {
             use std::os::unix::fs::MetadataExt;

@@ -29,8 +29,8 @@ impl From<MismatchError> for JournalError {
 }
 
 /// The state after a number of entries.
-#[derive(Default)]
-struct RestoredState {
+#[derive(Debug, Default)]
+pub struct JournalState {
     layout: PageLayout,
     robots: Vec<StoredRobot>,
     spent: u64,
@@ -39,13 +39,22 @@ struct RestoredState {
     paused: bool,
 }
 
-impl RestoredState {
+impl JournalState {
+    /// Number of robots.
+    pub fn robots(&self) -> usize {
+        self.robots.len()
+    }
+
     fn robot(&mut self, name: &str) -> Result<&mut StoredRobot, JournalError> {
         let found = self.robots.iter_mut().find(|robot| robot.name == name);
         found.ok_or_else(|| JournalError(format!("an entry is about the robot {name}, which is not there")))
     }
 
-    fn take(&mut self, entry: JournalEntry) -> Result<(), JournalError> {
+    /// Takes the next entry.
+    ///
+    /// # Errors
+    /// [`JournalError`] if it contradicts those before it.
+    pub fn take(&mut self, entry: JournalEntry) -> Result<(), JournalError> {
         match entry {
             JournalEntry::Layout(layout) => self.layout = layout,
             JournalEntry::Robot(known) => {
@@ -121,7 +130,7 @@ impl Supervisor {
         entries: Vec<JournalEntry>,
         keeper: Box<dyn JournalStore>,
     ) -> Result<Self, JournalError> {
-        let mut state = RestoredState::default();
+        let mut state = JournalState::default();
         entries.into_iter().try_for_each(|entry| state.take(entry))?;
         let mut own = Self::new(settings, keeper);
         (own.layout, own.spent, own.away) = (state.layout, state.spent, state.away);

@@ -1,6 +1,7 @@
 //! Where clients of the lines connect, and what they have to know.
 
 use super::super::CliError;
+use super::standby::patient;
 use super::threads::thread;
 use super::{ServeArgs, bound};
 use pcr_serve::clients::{self, Access};
@@ -72,11 +73,11 @@ pub(super) fn start(arguments: &ServeArgs, handle: &ServerHandle, log: LogWriter
     );
     for place in &arguments.listen {
         let (listener, access) = match place {
-            ListenAddress::Tcp(place) => tcp(arguments, place, log)?,
+            ListenAddress::Tcp(place) => patient(arguments, || tcp(arguments, place, log))?,
             ListenAddress::Unix(path) => {
                 let of_journal = || arguments.journal.as_ref().map(|folder| folder.join("socket"));
                 let path = path.clone().or_else(of_journal).unwrap_or_default();
-                (sockets.bind(&path, log)?, Access::new(None))
+                (patient(arguments, || sockets.bind(&path, log))?, Access::new(None))
             }
         };
         let handle = handle.clone();

@@ -5,11 +5,11 @@ use super::super::printed::{notes, quiet};
 use super::super::{CliError, NOT_WRITTEN, WRONG_INPUT};
 use super::demo::BrokerDemo;
 use super::threads::thread;
-use super::{ServeArgs, bound, bridge, listen};
+use super::{ServeArgs, bound, bridge, listen, standby};
 use pcr_drawing::fleet_page;
 use pcr_formats::scenario::{Agent, MotionSpec, PathSegment, Scenario};
 use pcr_serve::http::{HttpContent, Readiness, RobotDrawing};
-use pcr_serve::journal::Journal;
+use pcr_serve::journal::{Journal, JournalContents};
 use pcr_serve::journal_entry::{JournalStore, NullStore};
 use pcr_serve::journal_writer::{JournalWriter, WriteProgress};
 use pcr_serve::log::{LogLevel, LogWriter};
@@ -18,7 +18,8 @@ use pcr_serve::server::{ServerHandle, ServerInput, queue, serve};
 use pcr_serve::supervisor::{Supervisor, SupervisorConfig};
 use pcr_serve::{clients, http};
 use std::io::{ErrorKind, Write};
-use std::net::TcpListener;
+use std::net::{SocketAddr, TcpListener};
+use std::path::Path;
 use std::process::ExitCode;
 use std::sync::mpsc::{Sender, channel};
 use std::thread;
@@ -29,7 +30,12 @@ pub(super) fn run(arguments: ServeArgs) -> Result<ExitCode, CliError> {
     let log = log_of(&arguments)?;
     let demo = arguments.demo.as_deref().map(|layout| BrokerDemo::start(layout, &arguments, log)).transpose()?;
     let (handle, inputs) = queue();
-    let (mut supervisor, kept) = open(&arguments, settings, &handle, log)?;
+    let waited = match standby::wait(&arguments, log)? {
+        Some(waited) => waited,
+        // It was ended while it waited.
+        None => return Ok(ExitCode::SUCCESS),
+    };
+    let (mut supervisor, kept) = open(&arguments, settings, &handle, waited.journal, log)?;
     if let Some(demo) = &demo {
         supervisor.draw(demo.drawn().clone()).map_err(|fault| CliError::Error(fault.to_string(), NOT_WRITTEN))?;
     }
@@ -40,13 +46,19 @@ pub(super) fn run(arguments: ServeArgs) -> Result<ExitCode, CliError> {
             .transpose()?,
     };
     let _sockets = listen::start(&arguments, &handle, log)?;
-    if let Some(listener) = page(&arguments).map(|place| shown(place, log)).transpose()? {
+    let readiness = ends.as_ref().map(bridge::BridgeThread::readiness);
+    if let Some((address, late)) = waited.page {
+        // It is asked already; nobody else has put anything there.
+        let _ = late.set((handle.clone(), site(Some(address), readiness)));
+    } else if let Some(listener) =
+        page(&arguments).map(|place| standby::patient(&arguments, || shown(place, log))).transpose()?
+    {
         let url = listener.local_addr().map_or_else(|_| String::new(), |address| format!("http://{address}/"));
         match demo {
             Some(_) => writeln!(notes(), "pcr: open {url} in a browser; Ctrl-C ends the demo")?,
             None => log.write(LogLevel::Info, "page", &[("url", &url)]),
         }
-        let site = site(&listener, ends.as_ref().map(bridge::BridgeThread::readiness));
+        let site = site(listener.local_addr().ok(), readiness);
         let handle = handle.clone();
         thread("page", move || http::listen(&handle, &listener.into(), site, log))?;
     }
@@ -158,7 +170,7 @@ pub(super) fn log_of(arguments: &ServeArgs) -> Result<LogWriter, CliError> {
 }
 
 /// Where the page is, if it is wanted.
-fn page(arguments: &ServeArgs) -> Option<&str> {
+pub(super) fn page(arguments: &ServeArgs) -> Option<&str> {
     arguments.page.as_deref().or(arguments.demo.is_some().then_some("8080"))
 }
 
@@ -188,6 +200,7 @@ fn open(
     arguments: &ServeArgs,
     settings: SupervisorConfig,
     handle: &ServerHandle,
+    taken_over: Option<(Journal, JournalContents)>,
     log: LogWriter,
 ) -> Result<(Supervisor, WriteProgress), CliError> {
     let Some(folder) = &arguments.journal else {
@@ -199,14 +212,10 @@ fn open(
         let keeper: Box<dyn JournalStore> = Box::new(NullStore);
         return Ok((Supervisor::new(settings, keeper), WriteProgress::default()));
     };
-    let (journal, found) = Journal::open(folder).map_err(|error| match error.kind() {
-        // Whoever has it open, or has damaged it, is not the disc.
-        ErrorKind::WouldBlock | ErrorKind::InvalidData => CliError::wrong(folder, error),
-        _ => CliError::Error(
-            format!("the journal cannot be opened, so no robot gets the right of way: {error}"),
-            NOT_WRITTEN,
-        ),
-    })?;
+    let (journal, found) = match taken_over {
+        Some(taken_over) => taken_over,
+        None => Journal::open(folder).map_err(|error| unopened(folder, error))?,
+    };
     if found.torn > 0 {
         log.write(
             LogLevel::Warn,
@@ -228,8 +237,20 @@ fn open(
     Ok((supervisor, kept))
 }
 
+/// The error of a journal that cannot be opened.
+pub(super) fn unopened(folder: &Path, error: std::io::Error) -> CliError {
+    match error.kind() {
+        // Whoever has it open, or has damaged it, is not the disc.
+        ErrorKind::WouldBlock | ErrorKind::InvalidData => CliError::wrong(folder, error),
+        _ => CliError::Error(
+            format!("the journal cannot be opened, so no robot gets the right of way: {error}"),
+            NOT_WRITTEN,
+        ),
+    }
+}
+
 /// Listens for the page.
-fn shown(place: &str, log: LogWriter) -> Result<TcpListener, CliError> {
+pub(super) fn shown(place: &str, log: LogWriter) -> Result<TcpListener, CliError> {
     let addresses =
         listen::addresses(place).map_err(|error| CliError::arguments(format!("--page: {place}: {error}")))?;
     let listener = bound("--page", place, &addresses, &[], log)?;
@@ -240,8 +261,8 @@ fn shown(place: &str, log: LogWriter) -> Result<TcpListener, CliError> {
     Ok(listener)
 }
 
-fn site(listener: &TcpListener, unready: Option<Readiness>) -> HttpContent {
-    let address = listener.local_addr().ok();
+/// What the page at an address shows.
+pub(super) fn site(address: Option<SocketAddr>, unready: Option<Readiness>) -> HttpContent {
     let port = address.map_or(0, |address| address.port());
     let mut hosts: Vec<String> = ["localhost", "127.0.0.1", "[::1]"].map(|host| format!("{host}:{port}")).into();
     hosts.extend(address.map(|address| address.to_string()));
