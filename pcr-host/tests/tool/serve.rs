@@ -717,3 +717,45 @@ fn a_standby_takes_over_when_the_supervisor_at_work_is_killed() {
     let alone = run(&["serve", "--log", "error", "--stay", "--standby"]).failed(2);
     assert!(alone.contains("add --journal DIR"), "{alone}");
 }
+
+/// On SIGHUP the file of vehicles is read again: who was added or is away since is known, and a file that is wrong changes nothing.
+#[cfg(target_os = "linux")]
+#[test]
+fn the_file_of_vehicles_is_read_again_on_a_signal() {
+    use std::os::unix::net::UnixStream;
+    let folder = directory("reload");
+    let state = folder.join("state");
+    let _ = std::fs::remove_dir_all(&state);
+    let file = folder.join("vehicles.json");
+    let vehicle = |serial: &str, away: bool| json!({ "manufacturer": "KIT", "serialNumber": serial, "radius": 0.4, "margin": 0.1, "speed": 1.0, "acceleration": 0.5, "away": away });
+    let write = |text: &Value| std::fs::write(&file, text.to_string()).unwrap();
+    write(&json!({ "vehicles": [vehicle("1", false)] }));
+    // Nobody is at this port: what a file says does not need a broker.
+    let [state_name, file_name] = [&state, &file].map(|path| path.to_str().unwrap().to_owned());
+    let arguments = ["--journal", &state_name, "--listen", "--broker", "localhost:1", "--fleet", &file_name];
+    let mut own = Listening::start(&arguments, Stdio::null());
+    let hello = r#"{"pcr":1,"verb":"hello"}"#.to_owned() + "\n";
+    let away = || {
+        let stream = UnixStream::connect(state.join("socket")).unwrap();
+        answers(stream, &format!("{hello}{ROBOTS}{END}"))[1]["ok"]["away"].clone()
+    };
+    assert_eq!(away(), json!([]));
+    let id = own.child.id().to_string();
+    let mut reload = |what: &str| -> String {
+        let kill = std::process::Command::new("kill").args(["-HUP", &id]).status().unwrap();
+        assert!(kill.success());
+        own.log.find(|line| line.contains("the file of vehicles was read again")).unwrap_or_else(|| panic!("{what}"))
+    };
+    write(&json!({ "vehicles": [vehicle("1", true), vehicle("2", true), vehicle("3", false)] }));
+    let line = reload("added");
+    assert!(line.contains("level=info") && line.contains(r#"added="KIT/2, KIT/3" left_out="""#), "{line}");
+    assert_eq!(away(), json!(["KIT/1", "KIT/2"]));
+    write(&json!({ "vehicles": [vehicle("2", false), { "manufacturer": "KIT" }] }));
+    let line = reload("wrong");
+    assert!(line.contains("level=error") && line.contains("vehicles[1]: "), "{line}");
+    assert_eq!(away(), json!(["KIT/1", "KIT/2"]), "nothing has changed");
+    write(&json!({ "vehicles": [vehicle("1", false), vehicle("2", true)] }));
+    let line = reload("left out");
+    assert!(line.contains(r#"added="" left_out="KIT/3""#), "{line}");
+    assert_eq!(away(), json!(["KIT/2"]));
+}
