@@ -30,6 +30,7 @@ mod refusals;
 mod rules;
 mod schema;
 mod serve;
+mod serve_running;
 mod simulate;
 mod sources;
 mod streams;
