@@ -208,7 +208,7 @@ function picture() {
     $("map").alt = `Collision map of ${ego}`;
   }
 }
-$("pause").onclick = () => { paused = !paused; $("pause").textContent = paused ? "Go on" : "Pause"; };
+$("pause").onclick = () => { paused = !paused; $("pause").textContent = paused ? "Unfreeze page" : "Freeze page"; };
 $("ego").onchange = () => { picture(); if (state) show(); };
 dark.onchange = () => { readTheme(); draw(); };
 window.onresize = draw;
