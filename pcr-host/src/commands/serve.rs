@@ -4,6 +4,7 @@ mod bridge;
 mod check;
 mod demo;
 mod listen;
+mod page;
 mod run;
 mod standby;
 mod threads;

@@ -1,7 +1,6 @@
 //! Where clients of the lines connect, and what they have to know.
 
 use super::super::CliError;
-use super::standby::patient;
 use super::threads::thread;
 use super::{ServeArgs, bound};
 use pcr_serve::clients::{self, Access};
@@ -13,6 +12,8 @@ use pcr_serve::sockets::SocketFile;
 use pcr_serve::token::Token;
 use std::net::{SocketAddr, ToSocketAddrs};
 use std::path::{Path, PathBuf};
+use std::thread::sleep;
+use std::time::{Duration, Instant};
 
 /// What stands for the socket in the folder of the journal.
 pub(super) const USUAL: &str = "unix:";
@@ -134,5 +135,25 @@ pub(super) fn addresses(place: &str) -> std::io::Result<Vec<SocketAddr>> {
     match place.parse::<u16>() {
         Ok(port) => Ok(vec![([127, 0, 0, 1], port).into()]),
         Err(_) => place.to_socket_addrs().map(Iterator::collect),
+    }
+}
+
+/// Time for which a place to listen at may still be that of a process that is ending: it loses its files one after the other.
+const PATIENCE: Duration = Duration::from_secs(2);
+
+/// Time between two attempts.
+const PAUSE: Duration = Duration::from_millis(50);
+
+/// Tries again for a while, where a supervisor takes the place of another one.
+pub(super) fn patient<T>(
+    arguments: &ServeArgs,
+    mut attempt: impl FnMut() -> Result<T, CliError>,
+) -> Result<T, CliError> {
+    let begin = Instant::now();
+    loop {
+        match attempt() {
+            Err(_) if arguments.standby && begin.elapsed() < PATIENCE => sleep(PAUSE),
+            done => return done,
+        }
     }
 }

@@ -5,21 +5,15 @@ use super::super::printed::{notes, quiet};
 use super::super::{CliError, NOT_WRITTEN, WRONG_INPUT};
 use super::demo::BrokerDemo;
 use super::threads::thread;
-use super::{ServeArgs, bound, bridge, listen, standby};
-use pcr_drawing::fleet_page;
-use pcr_formats::scenario::{Agent, MotionSpec, PathSegment, Scenario};
-use pcr_serve::http::{HttpContent, Readiness, RobotDrawing};
+use super::{ServeArgs, bridge, listen, page, standby};
 use pcr_serve::journal::{Journal, JournalContents};
 use pcr_serve::journal_entry::{JournalStore, NullStore};
 use pcr_serve::journal_writer::{JournalWriter, WriteProgress};
 use pcr_serve::log::{LogLevel, LogWriter};
-use pcr_serve::owned_path::PathElement;
 use pcr_serve::server::{ServerHandle, ServerInput, queue, serve};
 use pcr_serve::supervisor::{Supervisor, SupervisorConfig};
 use pcr_serve::{clients, http};
 use std::io::{ErrorKind, Write};
-use std::net::{SocketAddr, TcpListener};
-use std::path::Path;
 use std::process::ExitCode;
 use std::sync::mpsc::{Sender, channel};
 use std::thread;
@@ -49,18 +43,18 @@ pub(super) fn run(arguments: ServeArgs) -> Result<ExitCode, CliError> {
     let readiness = ends.as_ref().map(bridge::BridgeThread::readiness);
     if let Some((address, late)) = waited.page {
         // It is asked already; nobody else has put anything there.
-        let _ = late.set((handle.clone(), site(Some(address), readiness)));
+        let _ = late.set((handle.clone(), page::content(Some(address), readiness)));
     } else if let Some(listener) =
-        page(&arguments).map(|place| standby::patient(&arguments, || shown(place, log))).transpose()?
+        page::place(&arguments).map(|place| listen::patient(&arguments, || page::listener(place, log))).transpose()?
     {
         let url = listener.local_addr().map_or_else(|_| String::new(), |address| format!("http://{address}/"));
         match demo {
             Some(_) => writeln!(notes(), "pcr: open {url} in a browser; Ctrl-C ends the demo")?,
             None => log.write(LogLevel::Info, "page", &[("url", &url)]),
         }
-        let site = site(listener.local_addr().ok(), readiness);
+        let content = page::content(listener.local_addr().ok(), readiness);
         let handle = handle.clone();
-        thread("page", move || http::listen(&handle, &listener.into(), site, log))?;
+        thread("page", move || http::listen(&handle, &listener.into(), content, log))?;
     }
     let stays = arguments.stay || demo.is_some();
     let (failed, failures) = channel();
@@ -169,11 +163,6 @@ pub(super) fn log_of(arguments: &ServeArgs) -> Result<LogWriter, CliError> {
     Ok(LogWriter::new(level))
 }
 
-/// Where the page is, if it is wanted.
-pub(super) fn page(arguments: &ServeArgs) -> Option<&str> {
-    arguments.page.as_deref().or(arguments.demo.is_some().then_some("8080"))
-}
-
 /// Ctrl-C and its like end it in order.
 fn interrupted(handle: ServerHandle) -> Result<(), CliError> {
     #[cfg(unix)]
@@ -214,7 +203,7 @@ fn open(
     };
     let (journal, found) = match taken_over {
         Some(taken_over) => taken_over,
-        None => Journal::open(folder).map_err(|error| unopened(folder, error))?,
+        None => Journal::open(folder).map_err(|error| standby::unopened(folder, error))?,
     };
     if found.torn > 0 {
         log.write(
@@ -235,70 +224,4 @@ fn open(
     let supervisor = supervisor.map_err(|damaged| CliError::wrong(folder, damaged))?;
     log.write(LogLevel::Info, "ready", &[("robots", &supervisor.robots().len())]);
     Ok((supervisor, kept))
-}
-
-/// The error of a journal that cannot be opened.
-pub(super) fn unopened(folder: &Path, error: std::io::Error) -> CliError {
-    match error.kind() {
-        // Whoever has it open, or has damaged it, is not the disc.
-        ErrorKind::WouldBlock | ErrorKind::InvalidData => CliError::wrong(folder, error),
-        _ => CliError::Error(
-            format!("the journal cannot be opened, so no robot gets the right of way: {error}"),
-            NOT_WRITTEN,
-        ),
-    }
-}
-
-/// Listens for the page.
-pub(super) fn shown(place: &str, log: LogWriter) -> Result<TcpListener, CliError> {
-    let addresses =
-        listen::addresses(place).map_err(|error| CliError::arguments(format!("--page: {place}: {error}")))?;
-    let listener = bound("--page", place, &addresses, &[], log)?;
-    if listener.local_addr().is_ok_and(|address| !address.ip().is_loopback()) {
-        let what = "other machines can reach the page: whoever does sees the fleet, and can change nothing";
-        log.write(LogLevel::Warn, what, &[("address", &place)]);
-    }
-    Ok(listener)
-}
-
-/// What the page at an address shows.
-pub(super) fn site(address: Option<SocketAddr>, unready: Option<Readiness>) -> HttpContent {
-    let port = address.map_or(0, |address| address.port());
-    let mut hosts: Vec<String> = ["localhost", "127.0.0.1", "[::1]"].map(|host| format!("{host}:{port}")).into();
-    hosts.extend(address.map(|address| address.to_string()));
-    // Browsers leave out the usual port.
-    let short = |host: &String| host.strip_suffix(":80").map(str::to_owned);
-    hosts.extend(hosts.iter().filter_map(short).collect::<Vec<_>>());
-    // At 0.0.0.0 it is reached by any address of the machine.
-    let addresses = address.is_some_and(|address| address.ip().is_unspecified());
-    HttpContent { page: fleet_page::page(), draw: Some(draw), hosts, addresses, unready }
-}
-
-/// The collision map of a robot, if all set off now.
-fn draw(fleet: &[RobotDrawing], ego: usize) -> Result<String, String> {
-    let agents = fleet.iter().zip(1..).map(|(robot, id)| {
-        // The map is without times, and no motion of the robot stops.
-        let turn = |sweep| PathSegment::Kink { sweep };
-        let path = robot.course.shapes().iter().flat_map(|shape| match *shape {
-            PathElement::Line { length } => vec![PathSegment::Line { length }],
-            PathElement::Arc { radius, sweep } => vec![PathSegment::Arc { radius, sweep }],
-            PathElement::Turn { sweep, .. } => vec![turn(sweep)],
-            PathElement::Shift { ahead, left } => {
-                let side = left.atan2(ahead);
-                vec![turn(side), PathSegment::Line { length: shape.length() }, turn(-side)]
-            }
-        });
-        let shifts = robot.course.shapes().iter().any(|shape| matches!(shape, PathElement::Shift { .. }));
-        let start = robot.course.start();
-        let motion = MotionSpec::RestToRest { v_max: robot.abilities.speed, a_max: robot.abilities.acceleration };
-        let radius = robot.abilities.radius;
-        let agent = Agent::disc(id, radius, [start.x, start.y, start.heading], path.collect(), motion);
-        // Agents of scenarios face along their paths.
-        let footprint = robot.abilities.footprint.clone().filter(|_| !robot.any_heading && !shifts);
-        let is_disc = footprint.is_none() && robot.abilities.footprint.is_some();
-        let label = if is_disc { format!("{} (drawn as a disc)", robot.name) } else { robot.name.clone() };
-        Agent { label, footprint, ..agent }
-    });
-    let scenario = Scenario::new("fleet", agents.collect());
-    fleet_page::map(&scenario, ego).map_err(|error| error.to_string())
 }

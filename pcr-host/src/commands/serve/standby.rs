@@ -1,25 +1,23 @@
 //! Waits while another supervisor has the journal open.
 
-use super::super::CliError;
+use super::super::{CliError, NOT_WRITTEN};
 use super::bridge::BridgeFleetConfig;
 use super::threads::thread;
-use super::{ServeArgs, run};
+use super::{ServeArgs, page};
 use pcr_serve::http::{self, LateSupervisor};
 use pcr_serve::journal::{Journal, JournalContents};
 use pcr_serve::log::{LogLevel, LogWriter};
 use pcr_serve::standby::Standby;
+use std::io::ErrorKind;
 use std::net::{SocketAddr, TcpListener};
 use std::path::Path;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::thread::sleep;
-use std::time::{Duration, Instant};
+use std::time::Duration;
 
 /// Time between two attempts to take over.
 const PAUSE: Duration = Duration::from_millis(50);
-
-/// Time for which a place to listen at may still be that of a process that is ending: it loses its files one after the other.
-const PATIENCE: Duration = Duration::from_secs(2);
 
 /// What a supervisor goes on with that has waited for its turn, or need not wait.
 #[derive(Default)]
@@ -32,7 +30,7 @@ pub(super) struct Waited {
 /// Waits until nobody else has the journal open, if it is a standby; `None`: it was told to end.
 pub(super) fn wait(arguments: &ServeArgs, log: LogWriter) -> Result<Option<Waited>, CliError> {
     let (true, Some(folder)) = (arguments.standby, &arguments.journal) else { return Ok(Some(Waited::default())) };
-    let wrong = |error| run::unopened(folder, error);
+    let wrong = |error| unopened(folder, error);
     let mut standby = Standby::new(folder).map_err(wrong)?;
     if let Some(opened) = standby.take_over().map_err(wrong)? {
         return Ok(Some(Waited { journal: Some(opened), page: None }));
@@ -40,7 +38,7 @@ pub(super) fn wait(arguments: &ServeArgs, log: LogWriter) -> Result<Option<Waite
     // What is wrong with them is better known now. They are read again later.
     drop(BridgeFleetConfig::of(arguments, log)?);
     let ends = signals();
-    let page = run::page(arguments).and_then(|place| shown(place, log).transpose()).transpose()?;
+    let page = page::place(arguments).and_then(|place| shown(place, log).transpose()).transpose()?;
     let mut follows = Follows { folder, log, is_told: false, fault: None };
     loop {
         follows.look(&mut standby);
@@ -88,7 +86,7 @@ impl Follows<'_> {
 
 /// The page of a standby; `None` where another program is: the supervisor at work has the same, on the same machine.
 fn shown(place: &str, log: LogWriter) -> Result<Option<(SocketAddr, LateSupervisor)>, CliError> {
-    let listener: TcpListener = match run::shown(place, log) {
+    let listener: TcpListener = match page::listener(place, log) {
         Ok(listener) => listener,
         Err(CliError::Error(why, _)) => {
             let what = "no page while it waits; another port, where it says that it is a standby, can be watched";
@@ -98,23 +96,21 @@ fn shown(place: &str, log: LogWriter) -> Result<Option<(SocketAddr, LateSupervis
         Err(other) => return Err(other),
     };
     let address = listener.local_addr()?;
-    let (late, site) = (LateSupervisor::default(), run::site(Some(address), None));
+    let (late, site) = (LateSupervisor::default(), page::content(Some(address), None));
     let own = Arc::clone(&late);
     thread("page", move || http::listen_late(&own, &listener.into(), site, log))?;
     Ok(Some((address, late)))
 }
 
-/// Tries again for a while, where a supervisor takes the place of another one.
-pub(super) fn patient<T>(
-    arguments: &ServeArgs,
-    mut attempt: impl FnMut() -> Result<T, CliError>,
-) -> Result<T, CliError> {
-    let begin = Instant::now();
-    loop {
-        match attempt() {
-            Err(_) if arguments.standby && begin.elapsed() < PATIENCE => sleep(PAUSE),
-            done => return done,
-        }
+/// The error of a journal that cannot be opened.
+pub(super) fn unopened(folder: &Path, error: std::io::Error) -> CliError {
+    match error.kind() {
+        // Whoever has it open, or has damaged it, is not the disc.
+        ErrorKind::WouldBlock | ErrorKind::InvalidData => CliError::wrong(folder, error),
+        _ => CliError::Error(
+            format!("the journal cannot be opened, so no robot gets the right of way: {error}"),
+            NOT_WRITTEN,
+        ),
     }
 }
 
