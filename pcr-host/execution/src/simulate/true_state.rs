@@ -18,7 +18,7 @@ pub struct Disturbance {
     pub noise: f64,
     /// Largest share of its way that a robot loses to slip, 0 to 1.
     pub slip: f64,
-    /// Longest time for which a robot is held up, on average every [`HELD_EVERY`] \[s\].
+    /// Longest time for which a robot is held up, on average every 10 s \[s\].
     pub delay: f64,
     /// Largest distance of a robot from its path \[m\].
     pub drift: f64,
