@@ -48,7 +48,7 @@ pub trait HostScalar: Scalar<Angle: Send + Sync, Unit: Send + Sync> + Send + Syn
     fn from_f64(value: f64) -> Self;
     /// The exact value.
     fn to_f64(self) -> f64;
-    /// The nearest angle of the format; `None` above [`ANGLE_LIMIT`], and for NaN.
+    /// The nearest angle of the format; `None` above 2^24 rad, and for NaN.
     fn angle(radians: f64) -> Option<Self::Angle>;
     /// The exact angle \[rad\].
     fn radians(angle: Self::Angle) -> f64;
