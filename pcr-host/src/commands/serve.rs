@@ -62,7 +62,7 @@ pub(super) struct ServeArgs {
     /// Do not end when standard input ends
     #[arg(long)]
     stay: bool,
-    /// Wait while another supervisor has the journal open, and take over when it ends
+    /// Wait, and take over when the supervisor at work ends
     #[arg(long)]
     standby: bool,
     /// How near to its hold a waiting robot's reported position has to come, in m [0.1; VDA 5050: 0.3]
@@ -77,7 +77,7 @@ pub(super) struct ServeArgs {
     /// Broker of a fleet of VDA 5050; user and password from PCR_BROKER_USER, PCR_BROKER_PASSWORD
     #[arg(long, value_name = "HOST:PORT")]
     broker: Option<String>,
-    /// Use TLS; the broker's certificate must be signed by one in FILE (PEM)
+    /// TLS, trusting the certificates in FILE (PEM)
     #[arg(long, value_name = "FILE")]
     authority: Option<PathBuf>,
     /// The file of vehicles (docs/guide/serve.md)
