@@ -22,7 +22,7 @@ pub(crate) type ArgumentRule =
     (&'static str, &'static [&'static str], ArgumentRelation, &'static [&'static str], &'static str);
 
 /// All of them.
-pub(crate) const RULES: [ArgumentRule; 39] = [
+pub(crate) const RULES: [ArgumentRule; 38] = [
     ("", &["json"], Excludes, &["format"], "--json is --format json; give one of them"),
     ("demo", &["scenario"], Excludes, &["output"], "--scenario prints the scenario and draws no pictures"),
     (
@@ -183,7 +183,6 @@ pub(crate) const RULES: [ArgumentRule; 39] = [
         &["journal"],
         "a standby waits for the journal of another supervisor; add --journal DIR",
     ),
-    ("serve", &["standby"], Needs, &["stay"], "standard input may end while a standby waits; add --stay"),
     ("serve", &["standby"], Excludes, &["check"], "--check waits for nobody: it only says what would be wrong"),
     ("serve", &["demo"], Excludes, &["stay"], "--demo always goes on when standard input ends"),
     (

@@ -34,7 +34,7 @@ Examples:
   pcr serve --journal state --listen 7070    and over TCP, with state/token
   pcr serve --journal state --page 8080      and a page: http://localhost:8080
   pcr serve --journal state --stay --broker localhost:1883 --fleet vehicles.json
-  pcr serve --journal state --stay --standby --page 8081   beside the first one
+  pcr serve --journal state --standby --page 8081   beside the first one
   pcr serve --demo warehouse_graph.geojson   broker, vehicles, manager and page";
 
 /// Supervise a fleet: decide how far each robot may go now

@@ -16,7 +16,7 @@ fn given(command: &str, name: &str) -> Vec<String> {
         "certify" if command == "locks" => return vec!["--certify".to_owned()],
         "file" | "layout" => return vec!["some-file".to_owned()],
         "audit" | "check" | "compare" | "delays" | "finish" | "foraging" | "json" | "lines" | "manager" | "nodes"
-        | "scenario" | "stay" => {
+        | "scenario" | "standby" | "stay" => {
             return vec![format!("--{name}")];
         }
         "topics" => return ["--topics", "a", "b"].map(str::to_owned).to_vec(),

@@ -56,7 +56,8 @@ pub(super) fn run(arguments: ServeArgs) -> Result<ExitCode, CliError> {
         let handle = handle.clone();
         thread("page", move || http::listen(&handle, &listener.into(), content, log))?;
     }
-    let stays = arguments.stay || demo.is_some();
+    // Standard input may end while a standby waits.
+    let stays = arguments.stay || arguments.standby || demo.is_some();
     let (failed, failures) = channel();
     let last = StopOnStdinEnd { handle: handle.clone(), stays, failed: failed.clone(), log };
     let unheard = StopOnStdoutError { handle: handle.clone(), stays, failed, log };
