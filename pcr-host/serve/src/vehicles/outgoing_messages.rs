@@ -168,14 +168,15 @@ impl SimulatedVehicle {
                 "maximumDeceleration": can.acceleration, "minimumHeight": 1.0, "maximumHeight": 1.0, "width": width, "length": length },
             "protocolLimits": { "maximumStringLengths": {}, "maximumArrayLengths": {},
                 "timing": { "minimumOrderInterval": 0.0, "minimumStateInterval": 0.0 } },
-            "protocolFeatures": { "optionalParameters": [], "mobileRobotActions": instant_actions(&json!({ "pauseAllowed": false, "cancelAllowed": false })) },
+            "protocolFeatures": { "optionalParameters": [], "mobileRobotActions": instant_actions(&json!({ "pauseAllowed": "False", "cancelAllowed": "False" })) },
             "mobileRobotGeometry": { "envelopes2d": [ { "envelope2dId": "contour", "vertices": self.contour() } ] },
             "loadSpecification": {},
         })
     }
 }
 
-/// The instant actions that it knows, as a factsheet lists them, each with these fields.
+/// The instant actions that it knows, as a factsheet lists them, each with these fields. The published schema of 3.0 has texts where others would have
+/// truth values.
 fn instant_actions(more: &Value) -> Vec<Value> {
     let action = |kind: &str| {
         let mut action = json!({ "actionType": kind, "actionScopes": ["INSTANT"] });
