@@ -172,8 +172,8 @@ browser() {
   .ci/install.sh chromium
 }
 
-# Another one, of another house.
-firefox() { command -v firefox >/dev/null || command -v firefox-esr >/dev/null || .ci/install.sh firefox-esr; }
+# Another browser. The function has another name than the program, or it would find itself.
+second_browser() { command -v firefox >/dev/null || command -v firefox-esr >/dev/null || .ci/install.sh firefox-esr; }
 
 # The tool as the tests have built it: `cargo build` would build much of it again, without what the tests ask of libraries.
 tool() { cargo test -q "${checked[@]}" "${targets[@]}" --no-run; }
@@ -190,7 +190,7 @@ pages() {
 web() {
   step "the module for WebAssembly, in node and in browsers"
   browser
-  firefox
+  second_browser
   tool
   bindings/web/check.sh "${CARGO_TARGET_DIR:-target}/checked/pcr"
   .ci/readme.py "In the browser"
