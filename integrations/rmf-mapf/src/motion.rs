@@ -51,6 +51,11 @@ impl OwnedMotion {
     /// [`Error::Empty`], [`Error::NoFootprint`], [`Error::Time`], [`Error::TurnsOnTheWay`], [`Error::HalfTurn`], [`Error::Invalid`].
     pub fn new(agent: usize, trajectory: &Trajectory) -> Result<Self, Error> {
         let invalid = |problem| Error::Invalid { agent, problem };
+        for (name, value) in [("margin", trajectory.margin), ("deviation", trajectory.deviation)] {
+            if !(value.is_finite() && value >= 0.0) {
+                return Err(invalid(InvalidInput::OutOfRange(name)));
+            }
+        }
         let &first = trajectory.poses.first().ok_or(Error::Empty { agent })?;
         let footprint = trajectory.footprint.as_ref().ok_or(Error::NoFootprint { agent })?;
         let (outline, reach) = match footprint {
@@ -121,7 +126,7 @@ impl OwnedMotion {
     }
 }
 
-/// What is left out if it is less: a length \[m\] and a turn \[rad\].
+/// The smallest length \[m\] and turn \[rad\] that are not left out.
 #[derive(Clone, Copy)]
 struct Least {
     length: f64,

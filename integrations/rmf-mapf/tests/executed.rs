@@ -254,7 +254,11 @@ fn what_cannot_be_answered_is_refused() {
     let polygon = |corners: &[[f64; 2]]| Footprint::Polygon { corners: corners.to_vec() };
     let square = [[1.0, -1.0], [1.0, 1.0], [-1.0, 1.0], [-1.0, -1.0]];
     let curved = Trajectory::new([pose(0.0, 0.0, 0.0), pose(1.0, 1.0, 0.2)]).with_footprint(polygon(&square));
-    assert_eq!(error(curved), Error::TurnsOnTheWay { agent: 1, waypoint: 1 });
+    assert_eq!(error(curved.clone()), Error::TurnsOnTheWay { agent: 1, waypoint: 1 });
+    for wrong in [-0.1, f64::NAN, f64::INFINITY] {
+        assert!(matches!(error(curved.clone().with_deviation(wrong)), Error::Invalid { agent: 1, .. }), "{wrong}");
+        assert!(matches!(error(good.clone().with_margin(wrong)), Error::Invalid { agent: 1, .. }), "{wrong}");
+    }
     let turned = Trajectory::new([pose(0.0, 0.0, 0.0), pose(1.0, 0.0, PI)]).with_footprint(polygon(&square));
     assert_eq!(error(turned.clone()), Error::HalfTurn { agent: 1, waypoint: 1 });
     assert_eq!(error(turned.divided(0.1).0), Error::HalfTurn { agent: 1, waypoint: 1 });

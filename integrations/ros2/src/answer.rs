@@ -29,7 +29,7 @@ impl<'a> Known<'a> {
     }
 }
 
-/// What is published.
+/// The conflicts, authorities and markers that are published.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Answer {
     /// Pairs and conflicts.

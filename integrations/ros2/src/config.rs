@@ -51,7 +51,7 @@ pub struct Pace {
     pub turn: f64,
 }
 
-/// What is wrong with a configuration.
+/// Why a configuration is refused.
 #[derive(Clone, Debug, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum ConfigError {
@@ -85,11 +85,11 @@ pub enum ConfigError {
         /// The robot.
         robot: String,
     },
-    /// The outline of a robot is none.
+    /// The corners of a robot are not those of a convex polygon, or are out of range.
     Outline {
         /// The robot.
         robot: String,
-        /// What is wrong.
+        /// Why it is not an outline.
         problem: pcr_core::InvalidInput,
     },
 }
@@ -174,11 +174,12 @@ impl RobotConfig {
         Ok(())
     }
 
-    /// What the robot occupies, without the margin.
-    pub fn footprint(&self) -> Footprint {
+    /// What the robot occupies, without the margin. Without a radius and an outline, as no configuration is that was read, it is a disc whose motion
+    /// is refused.
+    pub(crate) fn footprint(&self) -> Footprint {
         match &self.outline {
             Some(corners) => Footprint::Polygon { corners: corners.clone() },
-            None => Footprint::Disc { radius: self.radius.unwrap_or(0.0) },
+            None => Footprint::Disc { radius: self.radius.unwrap_or(f64::NAN) },
         }
     }
 }

@@ -11,7 +11,7 @@ use ros2_client::{
 use std::error::Error;
 use std::time::{Duration, Instant, SystemTime, UNIX_EPOCH};
 
-/// What is published at least as often as this, also if nothing comes in: paths grow old.
+/// The longest time between two answers. There is one also if nothing comes in, because paths grow old.
 const PERIOD: Duration = Duration::from_secs(1);
 
 type Failure = Box<dyn Error>;

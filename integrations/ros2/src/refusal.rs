@@ -52,7 +52,7 @@ pub enum Refusal {
     },
     /// A number is out of range.
     Range(InvalidInput),
-    /// What was derived from it is not a motion.
+    /// Its poses do not make a motion.
     Motion(pcr_rmf_mapf::Error),
     /// The message is not one of its type.
     Unreadable(String),

@@ -180,6 +180,20 @@ fn fleets_have_the_robots_that_are_configured() {
     assert_eq!(told(&[both, other, gone]), (clear, true, String::new()));
 }
 
+/// One that was not read, and so not checked.
+#[test]
+fn a_robot_of_no_size_is_unknown() {
+    let config = r#"{ "frame": "map", "max_age": 2, "robots": [
+        { "name": "a", "path": "/a", "radius": 0.3, "margin": 0 }, { "name": "b", "path": "/b", "radius": 0.3, "margin": 0 }] }"#;
+    let mut config = Config::from_json(config).expect("a configuration");
+    config.robots[1].radius = None;
+    let mut watch = Watch::new(config);
+    (0..2).for_each(|robot| watch.take(robot, &path(&LANES[robot])));
+    let answer = watch.answer(NOW);
+    assert_eq!(pair(&answer, "a", "b").state, PairReport::UNKNOWN, "{answer:?}");
+    assert!(answer.authorities.robots.iter().all(|authority| authority.state == AuthorityReport::UNKNOWN));
+}
+
 #[test]
 fn configurations() {
     let robots = r#""robots": [{ "name": "a", "path": "/a", "radius": 0.3, "margin": 0 }, { "name": "b", "path": "/b", "radius": 0.3, "margin": 0 }]"#;

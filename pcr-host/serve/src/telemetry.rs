@@ -64,7 +64,11 @@ impl Telemetry {
                 return;
             }
             SupervisorEvent::Go { .. } if self.paused.remove(robot) => return,
-            SupervisorEvent::Stop { by, .. } => format!("{robot} has to stop for {by}"),
+            SupervisorEvent::Stop { by, .. } => {
+                // It may have been removed while the fleet was paused.
+                self.paused.remove(robot);
+                format!("{robot} has to stop for {by}")
+            }
             SupervisorEvent::Go { .. } => format!("{robot} may go on"),
         };
         if self.events.len() == EVENTS {

@@ -35,7 +35,7 @@ const OF_PATH: [&str; 4] = ["peripheralOperation", "vehicleEnvelope", "property"
 /// The same of a vehicle.
 const OF_VEHICLE: [&str; 3] = ["boundingBox", "property", "vehicleLayout"];
 
-/// The same of a block.
+/// The elements of a block.
 const OF_BLOCK: [&str; 3] = ["member", "property", "blockLayout"];
 
 /// The same of the visual layout, and of what it says of a point or path.

@@ -73,19 +73,22 @@ impl Supervisor {
 
     /// That the fleet is paused, and who cannot be, in words; `None` if it is not.
     pub fn pause_reason(&self) -> Option<String> {
+        Some(format!("the fleet {}", self.pause_state()?))
+    }
+
+    /// The same of the fleet, without its name.
+    pub(crate) fn pause_state(&self) -> Option<String> {
         self.paused.then(|| {
             let unable: Vec<&str> = self.unpausable(PauseAbility::Unable).collect();
             if unable.is_empty() {
-                return "the fleet is paused".to_owned();
+                return "is paused".to_owned();
             }
             let more = match unable.len().saturating_sub(NAMED) {
                 0 => String::new(),
                 more => format!(" and {more} others"),
             };
             let named = unable[..unable.len().min(NAMED)].join(", ");
-            format!(
-                "the fleet is paused; {named}{more}: cannot be paused, and may go on to the end of what was released"
-            )
+            format!("is paused; {named}{more} cannot be paused, and may go on to the end of what was released")
         })
     }
 

@@ -297,10 +297,8 @@ impl Vda5050Bridge {
             None => (NoticeKind::Closed, [area.name.clone(), "is closed".to_owned()]),
             Some(speed) => (NoticeKind::Limited, [area.name.clone(), format!("limits the speed to {speed} m/s")]),
         });
-        let paused = supervisor.pause_reason();
-        let paused = paused.iter().filter_map(|why| why.split_once(" is "));
-        let paused = paused.map(|(who, why)| (NoticeKind::Paused, [who.to_owned(), format!("is {why}")]));
-        let notices: Vec<(NoticeKind, [String; 2])> = paused.chain(unplaced).chain(closed).collect();
+        let paused = supervisor.pause_state().map(|state| (NoticeKind::Paused, ["the fleet".to_owned(), state]));
+        let notices: Vec<(NoticeKind, [String; 2])> = paused.into_iter().chain(unplaced).chain(closed).collect();
         if notices != self.notices && now.is_finite() && now >= self.noticed_at + PAUSE {
             self.noticed_at = now;
             for (place, lane) in self.lanes.iter_mut().enumerate() {

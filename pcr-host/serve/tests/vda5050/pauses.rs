@@ -157,7 +157,7 @@ fn who_cannot_be_paused_is_named_and_gets_nothing_more_released() {
             own.lasts(0.5);
             let impact = own.supervisor.pause().unwrap();
             assert_eq!([impact.unable.len(), impact.unknown.len()], [unable, unknown], "{version:?} {actions:?}");
-            let why = "the fleet is paused; sim/001: cannot be paused, and may go on to the end of what was released";
+            let why = "the fleet is paused; sim/001 cannot be paused, and may go on to the end of what was released";
             let is_named = own.supervisor.pause_reason().unwrap() == why;
             assert_eq!(is_named, unable == 1);
             own.lasts(1.0);
