@@ -11,10 +11,10 @@ use serde_json::{Value, json};
 use std::collections::BTreeSet;
 use std::f64::consts::FRAC_PI_2;
 
-const ABILITIES: RobotTraits =
+pub(crate) const ABILITIES: RobotTraits =
     RobotTraits { radius: 0.25, footprint: None, margin: 0.0, speed: 1.0, acceleration: 0.5 };
 
-fn mission(robot: &str, name: &str, length: f64) -> MissionRequest {
+pub(crate) fn mission(robot: &str, name: &str, length: f64) -> MissionRequest {
     let path = vec![PathElement::Line { length }];
     let (robot, mission) = (robot.into(), name.into());
     MissionRequest { robot, mission, after: None, expected_path: None, any_heading: false, start: None, path }
@@ -24,12 +24,12 @@ fn at(robot: &str, path: u64, at: f64) -> PositionReport {
     PositionReport { robot: robot.into(), path, at: [at; 2], age: 0.0 }
 }
 
-fn place(x: f64, y: f64, heading: f64) -> StartPose {
+pub(crate) fn place(x: f64, y: f64, heading: f64) -> StartPose {
     StartPose { x, y, heading }
 }
 
 /// One that goes east through the origin, and one that goes north there second.
-fn crossing(disc: &Disc) -> Supervisor {
+pub(crate) fn crossing(disc: &Disc) -> Supervisor {
     let mut own = Supervisor::new(SupervisorConfig::default(), Box::new(disc.clone()));
     own.add("east", ABILITIES, place(-3.0, 0.0, 0.0)).unwrap();
     own.add("north", ABILITIES, place(0.0, -4.0, FRAC_PI_2)).unwrap();
@@ -41,7 +41,7 @@ fn crossing(disc: &Disc) -> Supervisor {
     own
 }
 
-fn restarted(disc: &Disc) -> Supervisor {
+pub(crate) fn restarted(disc: &Disc) -> Supervisor {
     Supervisor::restored(SupervisorConfig::default(), disc.entries(), Box::new(disc.clone())).unwrap()
 }
 

@@ -11,7 +11,7 @@ use pcr_serve::supervisor::{AdmissionResult, MissionRequest, PositionReport, Sup
 use serde_json::{Value, json};
 use std::collections::HashMap;
 use std::io::{BufRead, BufReader, ErrorKind, Seek, SeekFrom, Write};
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
 use std::sync::atomic::Ordering::Relaxed;
 
@@ -516,45 +516,55 @@ fn child() {
     }
 }
 
+/// Starts the child with a journal in a folder and kills it after so many lines; `each` sees a line before the next one is read. Returns the path and the
+/// hold that each robot was told last.
+pub(crate) fn told_until_killed(folder: &Path, most: usize, mut each: impl FnMut(&str)) -> HashMap<String, (u64, f64)> {
+    let mut child = Command::new(std::env::current_exe().unwrap())
+        .args(["--ignored", "--exact", "kills::child", "--nocapture"])
+        .env("PCR_SERVE_FOLDER", folder)
+        .stdout(Stdio::piped())
+        .stderr(Stdio::null())
+        .spawn()
+        .unwrap();
+    let mut lines = BufReader::new(child.stdout.take().unwrap()).lines();
+    let mut told = HashMap::new();
+    let mut take = |line: &str| {
+        let event = line.strip_prefix("told ").and_then(|text| serde_json::from_str::<Value>(text).ok());
+        let Some(event) = event.filter(|event| event["event"] == "hold" || event["event"] == "admitted") else {
+            return;
+        };
+        let of = (event["path"].as_u64().unwrap(), event["hold"].as_f64().unwrap());
+        told.insert(event["robot"].as_str().unwrap().to_owned(), of);
+    };
+    for line in lines.by_ref().take(most).map_while(Result::ok) {
+        each(&line);
+        take(&line);
+    }
+    child.kill().unwrap();
+    child.wait().unwrap();
+    // What was on its way is told, too.
+    lines.map_while(Result::ok).for_each(|line| take(&line));
+    told
+}
+
+/// Checks that a supervisor knows all that was told.
+pub(crate) fn assert_known(own: &Supervisor, told: &HashMap<String, (u64, f64)>, round: usize) {
+    for (name, (path, hold)) in told {
+        let robot = own.robot(name).unwrap();
+        assert!(robot.path >= *path, "round {round}: a path of {name} is lost");
+        assert!(robot.path > *path || robot.notified_limit >= *hold, "round {round}: {name} was told {hold}");
+    }
+}
+
 #[test]
 fn a_process_that_is_killed_has_told_nothing_that_is_not_in_its_journal() {
     let mut most = 0;
-    for round in 0..6_u64 {
+    for round in 0..6 {
         let folder = folder(&format!("killed-{round}"));
-        let own = std::env::current_exe().unwrap();
-        let mut child = Command::new(own)
-            .args(["--ignored", "--exact", "kills::child", "--nocapture"])
-            .env("PCR_SERVE_FOLDER", &folder)
-            .stdout(Stdio::piped())
-            .stderr(Stdio::null())
-            .spawn()
-            .unwrap();
-        let mut lines = BufReader::new(child.stdout.take().unwrap()).lines();
-        let (mut told, mut count) = (HashMap::new(), 0);
-        let mut take = |line: String| {
-            let event = line.strip_prefix("told ").and_then(|text| serde_json::from_str::<Value>(text).ok());
-            let Some(event) = event.filter(|event| event["event"] == "hold" || event["event"] == "admitted") else {
-                return;
-            };
-            let of = (event["path"].as_u64().unwrap(), event["hold"].as_f64().unwrap());
-            told.insert(event["robot"].as_str().unwrap().to_owned(), of);
-        };
-        while count < 40 + 60 * round {
-            let Some(Ok(line)) = lines.next() else { break };
-            count += 1;
-            take(line);
-        }
-        child.kill().unwrap();
-        child.wait().unwrap();
-        // What was on its way is told, too.
-        lines.map_while(Result::ok).for_each(&mut take);
+        let told = told_until_killed(&folder, 40 + 60 * round, |_| {});
         let (_journal, found) = Journal::open(&folder).unwrap();
         let after = Supervisor::restored(SupervisorConfig::default(), found.entries, Box::new(NullStore)).unwrap();
-        for (name, (path, hold)) in &told {
-            let robot = after.robot(name).unwrap();
-            assert!(robot.path >= *path, "round {round}: a path of {name} is lost");
-            assert!(robot.path > *path || robot.notified_limit >= *hold, "round {round}: {name} was told {hold}");
-        }
+        assert_known(&after, &told, round);
         most = most.max(told.len());
         let _ = std::fs::remove_dir_all(&folder);
     }

@@ -1,5 +1,6 @@
 //! The whole fleet is paused: everybody stops, nobody is granted anything, and whoever looks sees why.
 
+use crate::away::{self, ABILITIES, mission, place, restarted};
 use crate::lines::{document, fits};
 use crate::world::Disc;
 use pcr_serve::closed_area::ClosedArea;
@@ -8,36 +9,15 @@ use pcr_serve::http::{self, HttpContent};
 use pcr_serve::journal_writer::WriteProgress;
 use pcr_serve::lines::{handle, news};
 use pcr_serve::log::{LogLevel, LogWriter};
-use pcr_serve::owned_path::{PathElement, StartPose};
 use pcr_serve::request_error::RequestError;
-use pcr_serve::robot::RobotTraits;
 use pcr_serve::server::{ServerInput, queue, serve};
-use pcr_serve::supervisor::{AdmissionResult, MissionRequest, PositionReport, Supervisor, SupervisorConfig};
+use pcr_serve::supervisor::{AdmissionResult, PositionReport, Supervisor, SupervisorConfig};
 use serde_json::{Value, json};
-use std::f64::consts::FRAC_PI_2;
-
-const ABILITIES: RobotTraits =
-    RobotTraits { radius: 0.25, footprint: None, margin: 0.0, speed: 1.0, acceleration: 0.5 };
-
-fn mission(robot: &str, name: &str, length: f64) -> MissionRequest {
-    let path = vec![PathElement::Line { length }];
-    let (robot, mission) = (robot.into(), name.into());
-    MissionRequest { robot, mission, after: None, expected_path: None, any_heading: false, start: None, path }
-}
-
-fn place(x: f64, y: f64, heading: f64) -> StartPose {
-    StartPose { x, y, heading }
-}
 
 /// One that goes east through the origin, one that goes north there second, and one that stands far away.
 fn crossing(disc: &Disc) -> Supervisor {
-    let mut own = Supervisor::new(SupervisorConfig::default(), Box::new(disc.clone()));
-    own.add("east", ABILITIES, place(-3.0, 0.0, 0.0)).unwrap();
-    own.add("north", ABILITIES, place(0.0, -4.0, FRAC_PI_2)).unwrap();
+    let mut own = away::crossing(disc);
     own.add("far", ABILITIES, place(50.0, 50.0, 0.0)).unwrap();
-    for (robot, length) in [("east", 6.0), ("north", 8.0)] {
-        own.mission(&mission(robot, "1", length), 0.0).unwrap();
-    }
     own.settle(0.0).unwrap();
     own
 }
@@ -54,10 +34,6 @@ fn names(events: &[SupervisorEvent]) -> Vec<String> {
         format!("{kind} {}", event.robot().unwrap_or_default()).trim_end().to_owned()
     };
     events.iter().map(name).collect()
-}
-
-fn restarted(disc: &Disc) -> Supervisor {
-    Supervisor::restored(SupervisorConfig::default(), disc.entries(), Box::new(disc.clone())).unwrap()
 }
 
 fn holds(own: &Supervisor) -> Vec<f64> {

@@ -1,18 +1,15 @@
 //! A standby follows the journal of the supervisor at work, and takes over when that one is dead, at whatever write: no right is lost, and none is
 //! given to another robot.
 
-use crate::kills::{folder, keeps, rights};
+use crate::kills::{assert_known, folder, keeps, rights, told_until_killed};
 use crate::world::{Trouble, World};
 use pcr_serve::journal::{self, Journal, JournalFollower};
 use pcr_serve::journal_entry::{JournalEntry, JournalStore, NullStore};
 use pcr_serve::standby::Standby;
 use pcr_serve::supervisor::{Supervisor, SupervisorConfig};
-use serde_json::Value;
-use std::collections::HashMap;
 use std::fs::OpenOptions;
-use std::io::{BufRead, BufReader, ErrorKind, Write};
+use std::io::{ErrorKind, Write};
 use std::path::Path;
-use std::process::{Command, Stdio};
 use std::sync::{Arc, Mutex};
 
 const GOOD: Trouble = Trouble { lost: 0.0, late: 0.5, stops: 0.0 };
@@ -157,46 +154,19 @@ fn a_lock_that_was_removed_is_no_death() {
 #[test]
 fn it_takes_over_from_a_process_that_was_killed() {
     let mut most = 0;
-    for round in 0..6_usize {
+    for round in 0..6 {
         let folder = folder(&format!("standby-killed-{round}"));
-        let mut child = Command::new(std::env::current_exe().unwrap())
-            .args(["--ignored", "--exact", "kills::child", "--nocapture"])
-            .env("PCR_SERVE_FOLDER", &folder)
-            .stdout(Stdio::piped())
-            .stderr(Stdio::null())
-            .spawn()
-            .unwrap();
-        let mut lines = BufReader::new(child.stdout.take().unwrap()).lines();
-        let mut told: HashMap<String, (u64, f64)> = HashMap::new();
-        let mut take = |line: String| {
-            let event = line.strip_prefix("told ").and_then(|text| serde_json::from_str::<Value>(text).ok());
-            let Some(event) = event.filter(|event| event["event"] == "hold" || event["event"] == "admitted") else {
-                return;
-            };
-            let of = (event["path"].as_u64().unwrap(), event["hold"].as_f64().unwrap());
-            told.insert(event["robot"].as_str().unwrap().to_owned(), of);
-        };
         let mut standby = None;
-        for count in 0..60 + 50 * round {
-            let Some(Ok(line)) = lines.next() else { break };
+        let told = told_until_killed(&folder, 60 + 50 * round, |line| {
             // It has the lock before it says anything.
             if line.starts_with("told ") {
                 let standby = standby.get_or_insert_with(|| Standby::new(&folder).unwrap());
-                assert!(standby.take_over().unwrap().is_none(), "{count}");
+                assert!(standby.take_over().unwrap().is_none(), "round {round}: {line}");
                 standby.follow().unwrap();
             }
-            take(line);
-        }
-        child.kill().unwrap();
-        child.wait().unwrap();
-        lines.map_while(Result::ok).for_each(&mut take);
+        });
         let (_journal, found) = standby.unwrap().take_over().unwrap().expect("the lock of a dead process is free");
-        let after = restored(found.entries);
-        for (name, (path, hold)) in &told {
-            let robot = after.robot(name).unwrap();
-            assert!(robot.path >= *path, "round {round}: a path of {name} is lost");
-            assert!(robot.path > *path || robot.notified_limit >= *hold, "round {round}: {name} was told {hold}");
-        }
+        assert_known(&restored(found.entries), &told, round);
         most = most.max(told.len());
         let _ = std::fs::remove_dir_all(&folder);
     }
