@@ -1,8 +1,10 @@
-//! Vehicles with outlines that are driven backward, and change their gear on the way.
+//! Vehicles with outlines that are driven backward or sideways, and change between that on the way.
 
 use pcr_formats::import::{Facing, ImportOptions, InputFormat, Warnings, layout, scenario};
-use pcr_formats::scenario::{Agent, Scenario};
+use pcr_formats::scenario::{Agent, PathSegment, Scenario};
+use pcr_planning::exclusion_table::EdgeTraversals;
 use pcr_planning::fleet::Fleet;
+use pcr_planning::regions::{RegionOptions, RegionsReport};
 use serde_json::json;
 use std::f64::consts::{PI, TAU};
 use std::path::{Path, PathBuf};
@@ -88,18 +90,19 @@ fn headings(agent: &Agent) -> Vec<f64> {
     let scenario = Scenario::new("", vec![agent.clone()]);
     let fleet = Fleet::<f64>::new(&scenario).unwrap();
     let motion = &fleet.motions()[0];
-    let mut gears = Vec::new();
-    let mut reverse = false;
+    let mut facings = Vec::new();
+    let mut facing = 0.0;
     for segment in &agent.path {
-        reverse ^= segment.letter() == 'C';
-        // A disc stands while it turns.
-        if !['C', 'T'].contains(&segment.letter()) {
-            gears.push(reverse);
+        match *segment {
+            PathSegment::Facing { after, .. } => facing = after,
+            // A disc stands while it turns.
+            PathSegment::Turn { .. } => {}
+            _ => facings.push(facing),
         }
     }
-    assert_eq!(gears.len(), motion.path().segments().len());
+    assert_eq!(facings.len(), motion.path().segments().len());
     let along = motion.path().segments().iter().map(|segment| segment.heading_at(0.5 * segment.length()).0);
-    along.zip(gears).map(|(along, reverse)| (along + if reverse { PI } else { 0.0 }).rem_euclid(TAU)).collect()
+    along.zip(facings).map(|(along, facing)| (along + facing).rem_euclid(TAU)).collect()
 }
 
 /// They were replaced by the disc around the outline.
@@ -140,7 +143,9 @@ fn vehicles_change_their_gear_on_the_way() {
     let backward = agent(InputFormat::Vda5050, &order.to_string(), &[]);
     assert_eq!((backward.structure().as_str(), backward.footprint.is_some()), ("STS", true));
     // Where an edge says nothing clear, it is the disc, or what may face either way.
-    let order = json!({ "orderId": "o", "nodes": nodes, "edges": [edge(1, 0.0), edge(2, 1.0), edge(3, PI)] });
+    let mut rotates = edge(2, PI);
+    rotates["rotationAllowed"] = json!(true);
+    let order = json!({ "orderId": "o", "nodes": nodes, "edges": [edge(1, 0.0), rotates, edge(3, PI)] });
     assert!(agent(InputFormat::Vda5050, &order.to_string(), &[]).footprint.is_none());
     // A theta that is that of neither edge is refused, and what it is after the change of gear is taken.
     let mut nodes = nodes;
@@ -159,6 +164,90 @@ fn vehicles_change_their_gear_on_the_way() {
     };
     let error = scenario(InputFormat::Vda5050, &order(&nodes), &options, &mut Warnings::default()).unwrap_err();
     assert!(error.problem().contains("its theta"), "{error}");
+}
+
+/// They were replaced by the disc around the outline.
+#[test]
+fn vehicles_travel_sideways_where_their_edges_say_so() {
+    let node = |k: usize, x: f64, y: f64| {
+        json!({ "nodeId": k.to_string(), "sequenceId": 2 * k, "released": true, "actions": [],
+            "nodePosition": { "x": x, "y": y, "mapId": "m" } })
+    };
+    let edge = |k: usize, kind: &str, orientation: f64| {
+        json!({ "edgeId": format!("e{k}"), "sequenceId": 2 * k - 1, "released": true, "actions": [],
+        "orientation": orientation, "orientationType": kind })
+    };
+    let nodes = [node(0, 0.0, 0.0), node(1, 5.0, 0.0), node(2, 5.0, 3.0), node(3, 9.0, 6.0)];
+    let order = |edges: [serde_json::Value; 3]| json!({ "orderId": "o", "nodes": nodes, "edges": edges }).to_string();
+    let ordered = |edges| agent(InputFormat::Vda5050, &order(edges), &[]);
+    // Its heading stays on the map, round both corners: it stands there, and does not turn.
+    let global = ordered([edge(1, "GLOBAL", 0.2), edge(2, "GLOBAL", 0.2), edge(3, "GLOBAL", 0.2)]);
+    // Then it turns to where it looks to its left all along the last edge.
+    let turning = ordered([edge(1, "TANGENTIAL", 0.0), edge(2, "GLOBAL", 0.0), edge(3, "TANGENTIAL", 0.5 * PI)]);
+    let third = 3.0_f64.atan2(4.0);
+    for (agent, structure, expected) in
+        [(&global, "CSCSCS", [0.2; 3]), (&turning, "SCSCTS", [0.0, 0.0, third + 0.5 * PI])]
+    {
+        assert!(agent.footprint.is_some());
+        assert_eq!(agent.structure(), structure, "{agent:?}");
+        for (heading, expected) in headings(agent).into_iter().zip(expected) {
+            let off = (heading - expected + PI).rem_euclid(TAU) - PI;
+            assert!(off.abs() < 1e-9, "{heading} {expected}");
+        }
+    }
+    // At one angle all along, its outline is turned by it, and the path has no more segments than that of a disc.
+    let aslant = ordered([1, 2, 3].map(|k| edge(k, "TANGENTIAL", 0.3)));
+    assert_eq!(aslant.structure(), "STSTS");
+    let [ahead, left] = agent(InputFormat::Vda5050, &order([1, 2, 3].map(|k| edge(k, "TANGENTIAL", 0.0))), &[])
+        .footprint
+        .unwrap()
+        .polygon()[0];
+    let [x, y] = aslant.footprint.unwrap().polygon()[0];
+    let (sin, cos) = 0.3_f64.sin_cos();
+    assert!((x - (ahead * cos - left * sin)).hypot(y - (ahead * sin + left * cos)) < 1e-12);
+    // On a curve the heading cannot be the same on the map all along: it is the disc.
+    let points =
+        json!([{ "x": 0.0, "y": 0.0 }, { "x": 3.0, "y": 0.0 }, { "x": 5.0, "y": 0.5 }, { "x": 5.0, "y": 3.0 }]);
+    let mut curved = edge(1, "GLOBAL", 0.0);
+    curved["trajectory"] = json!({ "degree": 3, "knotVector": [0, 0, 0, 0, 1, 1, 1, 1], "controlPoints": points });
+    let order = |curved: &serde_json::Value| {
+        json!({ "orderId": "o", "nodes": [node(0, 0.0, 0.0), node(1, 5.0, 3.0)], "edges": [curved] }).to_string()
+    };
+    assert!(agent(InputFormat::Vda5050, &order(&curved), &[]).footprint.is_none());
+    curved["orientationType"] = json!("TANGENTIAL");
+    curved["orientation"] = json!(0.5 * PI);
+    assert!(agent(InputFormat::Vda5050, &order(&curved), &[]).footprint.is_some());
+}
+
+/// Two lanes, along one of which a vehicle of 1.9 m by 0.8 m faces ahead, and on the other one at an angle.
+#[test]
+fn traversals_of_edges_are_of_vehicles_as_they_face() {
+    let centred = Centred::new("aslant");
+    let node = |k: usize, x: f64, y: f64| json!({ "nodeId": k.to_string(), "nodePosition": { "x": x, "y": y } });
+    let edge = |k: usize, ends: [usize; 2], orientation: f64| {
+        let properties =
+            json!({ "vehicleTypeId": "v", "vehicleOrientation": orientation, "orientationType": "TANGENTIAL" });
+        json!({ "edgeId": format!("e{k}"), "startNodeId": ends[0].to_string(), "endNodeId": ends[1].to_string(),
+            "vehicleTypeEdgeProperties": [properties] })
+    };
+    for orientation in [0.0, 0.3, 0.5 * PI, 0.55 * PI, -1.0, PI] {
+        // Half the width of one, and half the extent of the other across its lane.
+        let touching = 0.4 + 0.95 * f64::sin(orientation).abs() + 0.4 * f64::cos(orientation).abs();
+        for (apart, meets) in [(touching + 0.01, false), (touching - 0.01, true)] {
+            let nodes = [node(0, 0.0, 0.0), node(1, 9.0, 0.0), node(2, 0.0, apart), node(3, 9.0, apart)];
+            let edges = [edge(0, [0, 1], 0.0), edge(1, [2, 3], orientation)];
+            let layouts = json!([{ "layoutId": "l", "nodes": nodes, "edges": edges }]);
+            let text = json!({ "metaInformation": { "lifVersion": "1.0.0" }, "layouts": layouts }).to_string();
+            let options = ImportOptions { fleet: Some(centred.0.clone()), ..ImportOptions::default() };
+            let read = layout(InputFormat::Lif, &text, &options, &mut Warnings::default()).unwrap();
+            let traversals = EdgeTraversals::new(&read);
+            let agents = [0, 1].map(|place| traversals.on_edge(&read.layout.edges[place]).swap_remove(0).agent);
+            let agents = agents.into_iter().zip(1..).map(|(agent, id)| Agent { id, ..agent });
+            let options = RegionOptions { agent: Some(1), slices: None, certificate: false };
+            let regions = RegionsReport::compute::<f64>(&Scenario::new("", agents.collect()), options).unwrap().regions;
+            assert_eq!(!regions.is_empty(), meets, "{orientation} {apart}");
+        }
+    }
 }
 
 #[test]

@@ -82,7 +82,7 @@ fn agent(scene: &RegionScene<'_>, place: usize, motion: &Motion<'_, f64>) -> Val
         let acceleration = if time.length() > 0.0 { (speeds[1] - speeds[0]) / time.length() } else { 0.0 };
         json!([time.lo, time.length(), length.lo, speeds[0], speeds[1], acceleration])
     });
-    let reverse = scene.reverse(place);
+    let facings = scene.facings(place);
     let parts = scene.scenario.agents.get(place).map_or_else(Vec::new, |agent| parts(agent, motion));
     let mut agent = json!({
         // Beyond 2⁵³ a number would lose its last digits in the browser.
@@ -97,8 +97,8 @@ fn agent(scene: &RegionScene<'_>, place: usize, motion: &Motion<'_, f64>) -> Val
         "segments": segments.collect::<Vec<_>>(),
         "phases": phases.collect::<Vec<_>>(),
     });
-    if !reverse.is_empty() {
-        agent["reverse"] = json!(reverse);
+    if !facings.is_empty() {
+        agent["facings"] = json!(facings);
     }
     agent
 }

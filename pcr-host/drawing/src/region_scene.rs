@@ -5,10 +5,9 @@ use super::layout::LayoutLevelView;
 use super::palette::{Colour, colour};
 use pcr_core::{Aabb, Crossing, Interval, Motion, PieceRef, PieceType, Pose, Radians, RegionRef, crossings};
 use pcr_formats::plane_geometry::wrapped;
-use pcr_formats::scenario::{Agent, Scenario};
+use pcr_formats::scenario::{Agent, KINK, Scenario};
 use pcr_planning::fleet::HostEcm;
 use std::collections::HashMap;
-use std::f64::consts::{FRAC_PI_2, PI};
 
 /// A fleet with its regions.
 pub(super) struct RegionScene<'a> {
@@ -79,16 +78,20 @@ impl RegionScene<'_> {
         }
     }
 
-    /// Whether an agent drives backward, on each segment of its motion; empty if it never does.
-    pub(super) fn reverse(&self, place: usize) -> Vec<bool> {
-        let agent = self.scenario.agents.get(place).filter(|agent| agent.changes_gear());
+    /// The angle from the direction of travel to the heading of an agent \[rad\], on each segment of its motion; empty if the two are
+    /// always the same.
+    pub(super) fn facings(&self, place: usize) -> Vec<f64> {
+        let agent = self.scenario.agents.get(place).filter(|agent| agent.changes_facing());
         let (Some(agent), Some(motion)) = (agent, self.motions.get(place)) else { return Vec::new() };
-        // The direction of travel turns by half a turn where the gear changes, and nowhere else without a length: an outline stands and turns.
-        let (mut heading, mut reverse) = (agent.start[2], false);
+        // The direction of travel turns where the angle changes, and nowhere else without a length: an outline stands and turns.
+        let (mut direction, mut facing) = (agent.start[2], 0.0);
         let segments = motion.path().segments().iter().map(|segment| {
-            reverse ^= wrapped(segment.heading_at(0.0).0 - heading).abs() > FRAC_PI_2;
-            heading = segment.heading_at(segment.length()).0;
-            reverse
+            let turned = wrapped(segment.heading_at(0.0).0 - direction);
+            if turned.abs() > KINK {
+                facing -= turned;
+            }
+            direction = segment.heading_at(segment.length()).0;
+            facing
         });
         segments.collect()
     }
@@ -98,8 +101,8 @@ impl RegionScene<'_> {
         let motion = self.motions.get(place)?;
         let Pose { position, heading } = motion.path().pose_at(length);
         let after = motion.path().segments().partition_point(|segment| segment.from() <= length).saturating_sub(1);
-        let is_backward = self.reverse(place).get(after).copied().unwrap_or_default();
-        Some(Pose { position, heading: Radians(if is_backward { heading.0 + PI } else { heading.0 }) })
+        let facing = self.facings(place).get(after).copied().unwrap_or_default();
+        Some(Pose { position, heading: Radians(heading.0 + facing) })
     }
 
     /// Whether an agent is more than one convex outline: maps show the regions of convex hulls.

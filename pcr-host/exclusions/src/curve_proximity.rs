@@ -157,7 +157,7 @@ fn carried(piece: &PlacedSegment, corner: [f64; 2]) -> PlacedSegment {
     match piece.shape {
         PathSegment::Arc { sweep, .. } => about(start, centre(piece), sweep),
         PathSegment::Turn { sweep } | PathSegment::Kink { sweep } => about(start, piece.start, sweep),
-        PathSegment::Line { .. } | PathSegment::Cusp => PlacedSegment { start, ..*piece },
+        PathSegment::Line { .. } | PathSegment::Facing { .. } => PlacedSegment { start, ..*piece },
     }
 }
 
@@ -165,7 +165,7 @@ fn carried(piece: &PlacedSegment, corner: [f64; 2]) -> PlacedSegment {
 fn seen(piece: &PlacedSegment, point: [f64; 2]) -> PlacedSegment {
     let from = |at: [f64; 2]| turned([at[0] - piece.start[0], at[1] - piece.start[1]], -piece.heading);
     match piece.shape {
-        PathSegment::Line { .. } | PathSegment::Cusp => {
+        PathSegment::Line { .. } | PathSegment::Facing { .. } => {
             PlacedSegment { start: from(point), heading: PI, shape: piece.shape }
         }
         PathSegment::Arc { sweep, .. } => about(from(point), from(centre(piece)), -sweep),

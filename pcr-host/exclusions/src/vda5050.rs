@@ -15,9 +15,7 @@ use crate::curve_proximity::{lengths_near_polygon, lengths_of_outline};
 use crate::options::{WriteNotes, WriteOptions};
 use crate::stamp::VehicleStamp;
 use crate::{DirectedEdgeRules, ExclusionGroup, ExclusionRules, ResourceClaim, TokenSpan, stretch};
-use pcr_formats::import::{
-    Facing, ImportError, ImportedLayout, Layout, LayoutEdge, RouteStep, VehicleTraits, parse_json,
-};
+use pcr_formats::import::{ImportError, ImportedLayout, Layout, LayoutEdge, RouteStep, VehicleTraits, parse_json};
 use pcr_formats::plane_geometry::hull;
 use pcr_formats::scenario::{Agent, LIMIT, PathSegment, PlacedSegment};
 use pcr_formats::warning::WarningCode;
@@ -223,12 +221,8 @@ impl OutlinePresence<'_> {
         };
         // What the vehicle itself covers, of which the agent has the hull if it may face either way, and the margin with other
         // deviations.
-        let contour = match (&self.vehicle.footprint, step.facing()) {
-            (Some(footprint), Facing::Ahead) => Some(footprint.clone()),
-            (Some(footprint), Facing::Backward) => Some(footprint.backward()),
-            _ => None,
-        };
-        let contour = contour.filter(|_| agent.footprint.is_some());
+        let known = step.facing().angle().filter(|_| agent.footprint.is_some());
+        let contour = known.and_then(|_| self.vehicle.facing(step.facing()).footprint);
         let off = agent.radius - self.vehicle.radius + SURE;
         let mut certain = Vec::new();
         if let Some(contour) = &contour {

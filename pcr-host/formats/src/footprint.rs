@@ -115,6 +115,15 @@ impl Footprint {
         Self { polygon: turned(&self.polygon), growth: self.growth, parts: self.parts.iter().map(turned).collect() }
     }
 
+    /// Returns the outline turned about its reference point by an angle \[rad\], to the left if positive.
+    #[must_use]
+    pub fn turned(&self, angle: f64) -> Self {
+        let (sin, cos) = angle.sin_cos();
+        let turned =
+            |corners: &Vec<[f64; 2]>| corners.iter().map(|[x, y]| [x * cos - y * sin, x * sin + y * cos]).collect();
+        Self { polygon: turned(&self.polygon), growth: self.growth, parts: self.parts.iter().map(turned).collect() }
+    }
+
     /// Returns the convex hull of the outline and the same turned by half a turn, which holds the vehicle whether it drives ahead or
     /// backward; nothing if it would have too many corners.
     pub fn either_way(&self) -> Option<Self> {

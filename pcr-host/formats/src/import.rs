@@ -94,7 +94,7 @@ pub use rmf::is_navigation_graph;
 pub use route::{RouteStep, cheapest, ride, turn};
 pub use timed_paths::sectioned;
 pub use timestamp::seconds;
-pub use vehicle::{Facing, HEADING, ImportOptions, SizeSource, TOLERANCE, VehicleTraits};
+pub use vehicle::{Facing, FacingAngle, HEADING, ImportOptions, SizeSource, TOLERANCE, VehicleTraits};
 pub use warnings::{Warnings, shortened};
 
 use crate::answer_files;

@@ -47,13 +47,15 @@ mod agent_parts;
 mod angles;
 mod decode;
 mod encode;
-mod gear;
+mod facing;
+mod file_version;
 mod json_fields;
 mod labels;
 mod load_outline;
 mod motion_spec;
 mod old_turns;
 mod outline;
+mod path_decode;
 mod placed_segment;
 mod round_trip;
 mod turns;
@@ -61,13 +63,13 @@ mod turns;
 use crate::footprint::Footprint;
 pub use agent_parts::{AgentPart, SegmentPhase};
 pub use decode::LENGTH_TOLERANCE;
-pub(crate) use decode::MOST_SEGMENTS;
 pub use json_fields::figure;
 pub use json_fields::{LIMIT, ScenarioError};
 pub use labels::{LONGEST_LABEL, Labels};
 pub use labels::{controls, label, printable};
 pub use load_outline::LoadOutline;
 pub use motion_spec::{MotionPiece, MotionSpec};
+pub(crate) use path_decode::MOST_SEGMENTS;
 pub use placed_segment::{KINK, PlacedSegment};
 pub use round_trip::speed_after;
 use std::f64::consts::TAU;
@@ -103,8 +105,8 @@ pub struct Agent {
     pub margin: f64,
     /// When it sets off \[s\].
     pub t_start: f64,
-    /// Abscissa \[m\], ordinate \[m\] and heading \[rad\] of the vehicle at the start of the path, which leads ahead unless it begins with a
-    /// change of gear.
+    /// Abscissa \[m\], ordinate \[m\] and heading \[rad\] of the vehicle at the start of the path, which leads ahead unless it begins with
+    /// [`PathSegment::Facing`].
     pub start: [f64; 3],
     /// The path.
     pub path: Vec<PathSegment>,
@@ -112,7 +114,7 @@ pub struct Agent {
     pub motion: MotionSpec,
 }
 
-/// A line, an arc, or what may be between them: a turn in place, a kink, or a change of gear.
+/// A line, an arc, or what may be between them: a turn in place, a kink, or a change of the angle from the way to the heading.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum PathSegment {
     /// Straight, with its length \[m\].
@@ -137,9 +139,18 @@ pub enum PathSegment {
         /// \[rad\], left positive.
         sweep: f64,
     },
-    /// A change of gear: the way goes on in the opposite direction, and the vehicle neither moves nor turns. It has no length.
-    Cusp,
+    /// A change of the angle from the direction of travel to the heading of the vehicle, which stands and keeps its heading: the way goes on
+    /// in another direction. Where the gear changes, it is the opposite one. It has no length.
+    Facing {
+        /// \[rad\], left positive.
+        before: f64,
+        /// \[rad\], left positive; [`REVERSE`] in reverse gear.
+        after: f64,
+    },
 }
+
+/// The angle from the direction of travel to the heading in reverse gear \[rad\].
+pub const REVERSE: f64 = -std::f64::consts::PI;
 
 impl Scenario {
     /// A scenario without warnings.
@@ -161,7 +172,7 @@ impl PathSegment {
         match *self {
             Self::Line { length } => length,
             Self::Arc { radius, sweep } => radius * sweep.abs(),
-            Self::Turn { .. } | Self::Kink { .. } | Self::Cusp => 0.0,
+            Self::Turn { .. } | Self::Kink { .. } | Self::Facing { .. } => 0.0,
         }
     }
 
@@ -170,7 +181,7 @@ impl PathSegment {
         /// A full turn may come in with the rounding of 2π to a dozen digits.
         const SHORTENED: f64 = 1.0 - 1e-12;
         match *self {
-            Self::Line { .. } | Self::Cusp => 1.0,
+            Self::Line { .. } | Self::Facing { .. } => 1.0,
             Self::Arc { sweep, .. } | Self::Turn { sweep } | Self::Kink { sweep } => {
                 (sweep.abs() / TAU * SHORTENED).ceil().max(1.0)
             }
@@ -181,7 +192,7 @@ impl PathSegment {
     pub fn sweep(&self) -> f64 {
         match *self {
             Self::Arc { sweep, .. } | Self::Turn { sweep } | Self::Kink { sweep } => sweep,
-            Self::Line { .. } | Self::Cusp => 0.0,
+            Self::Line { .. } | Self::Facing { .. } => 0.0,
         }
     }
 
@@ -190,13 +201,13 @@ impl PathSegment {
         matches!(self, Self::Turn { sweep } if *sweep != 0.0)
     }
 
-    /// Letter of the paper's path structure; it has none for turns and changes of gear.
+    /// Letter of the paper's path structure; it has none for turns and what keeps the heading.
     pub fn letter(&self) -> char {
         match self {
             Self::Line { .. } => 'S',
             Self::Arc { .. } => 'A',
             Self::Turn { .. } | Self::Kink { .. } => 'T',
-            Self::Cusp => 'C',
+            Self::Facing { .. } => 'C',
         }
     }
 }

@@ -38,7 +38,7 @@ struct Stretch {
     from: f64,
     /// Length of the whole path \[m\].
     length: f64,
-    /// Index of its first segment.
+    /// Index of its first segment in a file.
     first: usize,
     /// Whether it contains the start, and the end, of the path.
     ends: [bool; 2],
@@ -166,7 +166,7 @@ fn parts<S: HostScalar>(agent: &Agent) -> Vec<(Agent, Option<Stretch>)> {
             };
             let [before, after] = [agent.path.get(..first), agent.path.get(last + 1..)];
             let ends = [before, after].map(|segments| way(segments.unwrap_or_default()) <= ROUNDING * (1.0 + length));
-            (settled::<S>(part), Some(Stretch { from, length, first, ends }))
+            (settled::<S>(part), Some(Stretch { from, length, first: agent.file_segment(first), ends }))
         } else {
             (agent.clone(), None)
         };

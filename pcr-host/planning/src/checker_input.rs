@@ -4,7 +4,7 @@
 
 pub mod outlines;
 
-use crate::fleet::{Fleet, HostEcm, HostScalar, growth_of_turns};
+use crate::fleet::{Fleet, HostEcm, HostScalar, PathTurn, growth_of_turns};
 use pcr_certify::raw::{
     RawAgent, RawAngle, RawBranch, RawMotion, RawPair, RawPath, RawPhase, RawPiece, RawRegion, RawSegment, RawTable,
 };
@@ -16,14 +16,8 @@ use std::fmt;
 /// A bound on the last digit of an angle in fixed point, as a part of half a turn: 2⁻³¹.
 const FINEST: f64 = 1.0 / (1_u64 << 31) as f64;
 
-/// A motion: `heading` is the heading at the start of its path, `turns` are its turns in place, each before the segment with
-/// this index.
-pub fn agent<S: HostScalar>(
-    id: u64,
-    motion: &Motion<'_, S>,
-    heading: S::Angle,
-    turns: &[(usize, S::Angle)],
-) -> RawAgent {
+/// A motion: `heading` is the heading at the start of its path, `turns` are those of its direction of travel.
+pub fn agent<S: HostScalar>(id: u64, motion: &Motion<'_, S>, heading: S::Angle, turns: &[PathTurn<S>]) -> RawAgent {
     let path = motion.path();
     let parts = path.segments();
     let ends = parts.iter().skip(1).map(|next| next.from()).chain([path.length()]);
@@ -36,7 +30,7 @@ pub fn agent<S: HostScalar>(
             // The checker of discs has no turns in place with a length: it refuses this radius.
             Curve::Pivot { .. } => Some(0.0),
         },
-        turns: turns.iter().filter(|(before, _)| *before == place).map(|&(_, by)| S::held_angle(by)).collect(),
+        turns: turns.iter().filter(|turn| turn.before == place).map(|turn| S::held_angle(turn.by)).collect(),
         from: segment.from().to_f64(),
         to: to.to_f64(),
     });

@@ -143,8 +143,7 @@ struct MotionParts<S: Scalar> {
     /// Index of each segment in the scenario: segments of length 0 are left out, and arcs of more than one turn are split.
     sources: Vec<usize>,
     heading: S::Angle,
-    /// Turns in place, each before the segment with this index.
-    turns: Vec<(usize, S::Angle)>,
+    turns: Vec<PathTurn<S>>,
     phases: Vec<Phase<S>>,
     shape: Shape<S>,
     margin: S,
@@ -219,8 +218,8 @@ impl<S: HostScalar> Fleet<S> {
         self.agents.extend(other.agents);
     }
 
-    /// Heading at the start of an agent's path, and its turns in place, each before the segment with this index.
-    pub(crate) fn headings(&self, agent: usize) -> (S::Angle, &[TurnAt<S>]) {
+    /// Heading at the start of an agent's path, and the turns of its direction of travel.
+    pub(crate) fn headings(&self, agent: usize) -> (S::Angle, &[PathTurn<S>]) {
         let parts = &self.agents[agent];
         (parts.heading, &parts.turns)
     }
@@ -236,8 +235,16 @@ impl<S: HostScalar> Fleet<S> {
     }
 }
 
-/// Index of the segment before which an agent turns in place, and the angle.
-pub(crate) type TurnAt<S> = (usize, <S as Scalar>::Angle);
+/// A turn of the direction of travel that has no length.
+#[derive(Clone, Copy, Debug)]
+pub struct PathTurn<S: Scalar> {
+    /// Index of the segment that follows.
+    pub(crate) before: usize,
+    /// By how much, left positive.
+    pub(crate) by: S::Angle,
+    /// The angle from the direction of travel to the heading of the body after it, if the body keeps its heading; otherwise it turns as well.
+    pub(crate) facing: Option<S::Angle>,
+}
 
 impl<S: HostScalar> MotionParts<S> {
     /// It waits while it turns in place.
@@ -288,11 +295,11 @@ impl<S: HostScalar> MotionParts<S> {
     }
 }
 
-/// The placed segments of a path, the index of each in the scenario, and turns in place.
+/// The placed segments of a path, the index of each in the scenario, and turns of the direction of travel.
 struct PlacedPath<S: Scalar> {
     segments: Vec<Segment<S>>,
     sources: Vec<usize>,
-    turns: Vec<(usize, S::Angle)>,
+    turns: Vec<PathTurn<S>>,
 }
 
 /// The path of an agent. With `levers` \[m\], turns in place have a length where theirs is not 0.
@@ -305,17 +312,17 @@ fn place_path<S: HostScalar>(agent: &Agent, levers: Option<&[f64]>) -> Result<Pl
     let count = agent.path.len();
     let mut segments: Vec<Segment<S>> = Vec::with_capacity(count.max(1));
     let (mut sources, mut turns) = (Vec::with_capacity(count), Vec::new());
-    // Angle from the direction of travel to the heading of the body, from the first change of gear on.
-    let (mut facing, mut cusps) = (None, 0);
+    // Angle from the direction of travel to the heading of the body, from its first change on, and how many there were.
+    let (mut facing, mut changes) = (None, 0);
     for (source, segment) in agent.path.iter().enumerate() {
-        if *segment == PathSegment::Cusp {
-            // There and back by the same number, so that the heading of the body is the same one.
-            let half = if facing == Some(-PI) { -PI } else { PI };
-            let by = angle::<S>("gear", half)?;
+        if let PathSegment::Facing { before, after } = *segment {
+            // By what the angles differ in the format, so that the body keeps its heading.
+            let [was, is] = [angle::<S>("facing", before)?, angle::<S>("facing", after)?];
+            let by = angle::<S>("facing", S::radians(was) - S::radians(is))?;
             let last = segments.last_mut().unwrap_or(&mut origin);
             *last = last.turned(by).map_err(derived::<S>)?;
-            turns.push((segments.len(), by));
-            (facing, cusps) = (Some(if half > 0.0 { -half } else { 0.0 }), cusps + 1);
+            turns.push(PathTurn { before: segments.len(), by, facing: Some(is) });
+            (facing, changes) = (Some(is), changes + 1);
             continue;
         }
         let turn = match *segment {
@@ -326,14 +333,14 @@ fn place_path<S: HostScalar>(agent: &Agent, levers: Option<&[f64]>) -> Result<Pl
             continue;
         }
         // In the file.
-        let source = source - cusps;
+        let source = source - changes;
         let at = |problem| FieldFault { part: Some(("segment", source)), problem };
-        let lever = levers.and_then(|levers| levers.get(source + cusps).copied()).filter(|lever| *lever > 0.0);
+        let lever = levers.and_then(|levers| levers.get(source + changes).copied()).filter(|lever| *lever > 0.0);
         if let Some(sweep) = turn.filter(|_| lever.is_none()) {
             let by = angle::<S>("sweep", sweep).map_err(at)?;
             let last = segments.last_mut().unwrap_or(&mut origin);
             *last = last.turned(by).map_err(|reason| at(derived::<S>(reason)))?;
-            turns.push((segments.len(), by));
+            turns.push(PathTurn { before: segments.len(), by, facing: None });
             continue;
         }
         let whole = segment.turns();
@@ -355,7 +362,7 @@ fn place_path<S: HostScalar>(agent: &Agent, levers: Option<&[f64]>) -> Result<Pl
                 Curve::Arc { radius, turn } => last.then_arc(radius, turn, length),
             };
             let next = next.and_then(|next| match facing {
-                Some(facing) => next.facing(S::angle(facing).ok_or(InvalidInput::NonFinite("gear"))?),
+                Some(facing) => next.facing(facing),
                 None => Ok(next),
             });
             let next = next.map_err(|reason| at(RangeProblem::AtItsEnd(Box::new(derived::<S>(reason)))))?;

@@ -180,8 +180,13 @@ impl AgentBodies {
             match all.last_mut() {
                 Some(last) if place == first => last.parts.push(shape),
                 _ => {
-                    let stretch = own.outlines().into_iter().find(|outline| outline.segments[0] == body.first());
-                    let segments = stretch.filter(|_| !own.loads.is_empty()).map(|it| it.segments.map(|k| k + 1));
+                    let stretch = own
+                        .outlines()
+                        .into_iter()
+                        .find(|outline| own.file_segment(outline.segments[0]) == body.first());
+                    let segments = stretch
+                        .filter(|_| !own.loads.is_empty())
+                        .map(|it| it.segments.map(|k| own.file_segment(k) + 1));
                     all.push(Self { id: own.id, segments, parts: vec![shape] });
                 }
             }

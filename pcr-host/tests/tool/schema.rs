@@ -208,6 +208,8 @@ fn schema_and_tool_refuse_the_same_scenarios() {
         ("/version", json!(2)),
         ("/version", json!(3)),
         ("/version", json!(4)),
+        ("/version", json!(5)),
+        ("/agents/0/path", json!([{ "kind": "line", "length": 1, "facing": 1 }])),
         ("/agents/0/path", json!([{ "kind": "line", "length": 1, "gear": "reverse" }])),
         ("/agents/0/path", json!([{ "kind": "arc", "radius": 1, "sweep": 1, "gear": "forward" }])),
         ("/units", json!("m")),
@@ -287,6 +289,23 @@ fn schema_and_tool_refuse_the_same_scenarios() {
         scenario["agents"][0]["path"] = json!([{ "kind": "arc", "radius": 1, "sweep": 1, "gear": gear }]);
         let run = run_with(&["regions", "-q"], scenario.to_string().as_bytes());
         assert_eq!([run.status == 0, faults(&schema, &scenario).is_empty()], [is_one; 2], "{gear}: {}", run.err);
+    }
+    for (keys, is_one) in [
+        (json!({ "facing": 1 }), true),
+        (json!({ "facing_deg": -90 }), true),
+        (json!({ "facing": 1, "facing_deg": 1 }), false),
+        (json!({ "facing": 1, "gear": "reverse" }), false),
+        (json!({ "facing_deg": 1, "gear": "forward" }), false),
+        (json!({ "facing": "1" }), false),
+        (json!({ "facing": 1e11 }), false),
+    ] {
+        let mut scenario = crossing();
+        scenario["version"] = json!(4);
+        let mut segment = json!({ "kind": "line", "length": 1 });
+        segment.as_object_mut().unwrap().extend(keys.as_object().unwrap().clone());
+        scenario["agents"][0]["path"] = json!([segment]);
+        let run = run_with(&["regions", "-q"], scenario.to_string().as_bytes());
+        assert_eq!([run.status == 0, faults(&schema, &scenario).is_empty()], [is_one; 2], "{keys}: {}", run.err);
     }
     let line = json!({ "kind": "line", "length": 1 });
     let kink = json!([line, { "kind": "kink", "sweep": 0.5 }, line]);

@@ -2,7 +2,6 @@
 //! pcr-core.
 
 use pcr_formats::scenario::{Agent, PathSegment};
-use std::f64::consts::PI;
 
 /// A point \[m\].
 pub type Xy = [f64; 2];
@@ -111,8 +110,8 @@ impl DiscTrack {
                     heading += sweep;
                     continue;
                 }
-                PathSegment::Cusp => {
-                    heading += PI;
+                PathSegment::Facing { before, after } => {
+                    heading += before - after;
                     continue;
                 }
             };

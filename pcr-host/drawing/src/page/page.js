@@ -38,7 +38,7 @@ function poseAt(agent, length) {
   }
   const [from, whole, x, y, heading, bend, lever] = agent.segments[low];
   const u = Math.min(Math.max(length - from, 0), whole);
-  const facing = agent.reverse?.[low] ? Math.PI : 0;
+  const facing = agent.facings?.[low] ?? 0;
   if (lever !== undefined) return [x, y, heading + u / lever + facing];
   if (bend === 0) return [x + u * Math.cos(heading), y + u * Math.sin(heading), heading + facing];
   const half = u / bend / 2;

@@ -2,7 +2,7 @@
 
 use super::kinematic_limits::KinematicLimits;
 use pcr_core::{InvalidInput, Motion, PathRef, Phase, Point, Pose, ProfileRef, Radians, Segment, TurnSide};
-use pcr_formats::import::{Facing, Layout, RouteStep, VehicleTraits};
+use pcr_formats::import::{Layout, RouteStep, VehicleTraits};
 use pcr_formats::scenario::{PathSegment, PlacedSegment};
 use pcr_planning::fleet::ConvexBody;
 use std::f64::consts::{PI, TAU};
@@ -58,7 +58,7 @@ impl ElementMaker<'_> {
         shapes.retain(|placed| placed.shape.length() > 0.0);
         let from = self.layout.nodes[step.origin()].point;
         let speed = step.steady(self.vehicle.speed);
-        let facing = if self.has_outline() && self.is_known && step.facing() == Facing::Backward { PI } else { 0.0 };
+        let facing = step.facing().angle().filter(|_| self.has_outline() && self.is_known).unwrap_or(0.0);
         let abilities = KinematicLimits::of(&self.vehicle);
         // With this lever the turn takes as long at the speed of the edge as it would by itself.
         let lever = |turn: f64| {
@@ -205,7 +205,7 @@ fn path(
             PathSegment::Turn { .. } | PathSegment::Kink { .. } => {
                 return Err(InvalidInput::Disconnected("path with a turn of its own"));
             }
-            PathSegment::Cusp => return Err(InvalidInput::Disconnected("path in reverse gear")),
+            PathSegment::Facing { .. } => return Err(InvalidInput::Disconnected("path that leaves its heading")),
         };
         heading = placed.heading_at_end();
         segments.push(last);

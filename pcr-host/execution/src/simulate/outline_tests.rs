@@ -20,7 +20,7 @@ fn agent(id: u64, width: f64, [x, y, heading]: [f64; 3], path: &str) -> String {
 }
 
 fn task(agents: &[String]) -> SimulationTask {
-    let text = format!(r#"{{ "version": 2, "agents": [ {} ] }}"#, agents.join(", "));
+    let text = format!(r#"{{ "version": 4, "agents": [ {} ] }}"#, agents.join(", "));
     SimulationTask::from_scenario(&Scenario::from_json(&text).expect("a scenario")).expect("a task")
 }
 
@@ -144,12 +144,16 @@ fn random_fleets_of_rectangles_run_without_a_contact() {
             let at = [6.0 * heading.cos() + 2.0 * random.unit(), 6.0 * heading.sin() + 2.0 * random.unit()];
             let path = format!(
                 r#"{{ "kind": "line", "length": {} }}, {{ "kind": "arc", "radius": {}, "sweep": {} }}, {{ "kind": "turn", "sweep": {} }},
-                   {{ "kind": "line", "length": 4, "gear": "{}" }}"#,
+                   {{ "kind": "line", "length": 4, {} }}"#,
                 3.0 + 3.0 * random.unit(),
                 0.5 + random.unit(),
                 4.0 * random.unit() - 2.0,
                 3.0 * random.unit() - 1.5,
-                if random.unit() < 0.5 { "reverse" } else { "forward" }
+                match random.unit() {
+                    kind if kind < 0.4 => r#""gear": "reverse""#.to_owned(),
+                    kind if kind < 0.8 => format!(r#""facing": {}"#, TAU * random.unit()),
+                    _ => r#""gear": "forward""#.to_owned(),
+                }
             );
             agent(k as u64 + 1, width, [at[0], at[1], heading + PI], &path)
         });

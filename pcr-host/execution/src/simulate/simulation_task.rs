@@ -110,7 +110,7 @@ impl SimulationTask {
             let tops = tops(agent);
             let top = |segment| fleet.source(place, segment).and_then(|source| tops.get(source).copied());
             let body = ConvexBody::of_agent(agent).map_err(|_| ComputationError::Robot(agent.id))?;
-            let stands = body.is_disc() && !agent.changes_gear();
+            let stands = body.is_disc() && !agent.changes_facing();
             let course = if stands && !agent.turns_in_place() {
                 SpeedLimitedPath::of(&motion).with_speed_limits(|segment| top(segment).unwrap_or(f64::INFINITY))
             } else {

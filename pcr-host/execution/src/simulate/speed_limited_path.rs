@@ -7,7 +7,6 @@ use pcr_core::{
 };
 use pcr_formats::scenario::{Agent, PathSegment};
 use pcr_planning::fleet::{ConvexBody, speed};
-use std::f64::consts::PI;
 
 /// Travelled length for each radian of a turn in place of an outline \[m\]: so short that ramps of the speed take no time there.
 const LEVER: f64 = 1e-3;
@@ -18,7 +17,7 @@ const STANDING_LEVER: f64 = 1e-7;
 /// An outline has turned if less than this is left of a turn \[rad\].
 const TURNED: f64 = 1e-4;
 
-/// Time that a change of gear takes \[s\]: none, but for a frame in which the robot stands.
+/// Time that a change of gear, or of the angle from the way to the heading, takes \[s\]: none, but for a frame in which the robot stands.
 const SHIFT: f64 = 1e-9;
 
 /// A path of lines and arcs, with speed limits.
@@ -33,21 +32,21 @@ pub struct SpeedLimitedPath {
 struct SegmentLimit {
     /// Speed limit; infinite if there is none \[m/s\].
     top: f64,
-    /// In reverse gear.
-    reverse: bool,
+    /// Angle from the direction of travel to the heading \[rad\].
+    facing: f64,
     /// A turn in place for which the robot stands.
     stands: bool,
 }
 
 impl SegmentLimit {
     /// In forward gear, without a speed limit.
-    const NONE: Self = Self { top: f64::INFINITY, reverse: false, stands: false };
+    const NONE: Self = Self { top: f64::INFINITY, facing: 0.0, stands: false };
 }
 
-/// A place where a robot stands: a turn in place, or a change of gear.
+/// A place where a robot stands: a turn in place, or a change of facing.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct TurnInPlace {
-    /// Index of its segment: that of the turn, or the one before the change of gear.
+    /// Index of its segment: that of the turn, or the one before the change of facing.
     pub(super) segment: usize,
     /// Length along the course \[m\].
     pub(super) at: f64,
@@ -82,15 +81,15 @@ impl SpeedLimitedPath {
         top: impl Fn(usize) -> f64,
         stands: bool,
     ) -> Result<Self, InvalidInput> {
-        let mut reverse = false;
+        let mut facing = 0.0;
         let mut course = Self::standing(start)?;
         for (place, segment) in path.iter().enumerate() {
             let top = top(place);
             let whole = segment.turns();
             let (curve, length, top) = match *segment {
                 PathSegment::Line { length } => (Curve::Line, length, top),
-                PathSegment::Cusp => {
-                    reverse = !reverse;
+                PathSegment::Facing { after, .. } => {
+                    facing = after;
                     continue;
                 }
                 PathSegment::Arc { radius, sweep } => (Curve::Arc { radius, turn: side(sweep) }, segment.length(), top),
@@ -101,7 +100,7 @@ impl SpeedLimitedPath {
             };
             let stands = stands && segment.takes_turning();
             for _ in 0..whole as usize {
-                course.push(curve, length / whole, SegmentLimit { top, reverse, stands })?;
+                course.push(curve, length / whole, SegmentLimit { top, facing, stands })?;
             }
         }
         course.path()?;
@@ -123,7 +122,7 @@ impl SpeedLimitedPath {
         Self { segments: pose.and_then(Segment::standing).into_iter().collect(), limits: vec![SegmentLimit::NONE] }
     }
 
-    /// The path of a motion that does not change its gear.
+    /// The path of a motion whose heading is its direction of travel all along.
     pub fn of(motion: &Motion<'_, f64>) -> Self {
         let segments = motion.path().segments().to_vec();
         Self { limits: vec![SegmentLimit::NONE; segments.len()], segments }
@@ -144,16 +143,16 @@ impl SpeedLimitedPath {
         if length <= 0.0 {
             return Ok(());
         }
-        // There and back by the same number, so that the body keeps its heading.
-        if limit.reverse != before.reverse {
-            *last = last.turned(Radians(if limit.reverse { PI } else { -PI }))?;
+        // The body keeps its heading.
+        if limit.facing != before.facing {
+            *last = last.turned(Radians(before.facing - limit.facing))?;
         }
         let next = match curve {
             Curve::Line => last.then_line(length)?,
             Curve::Arc { radius, turn } => last.then_arc(radius, turn, length)?,
             Curve::Pivot { lever, turn } => last.then_pivot(lever, turn, length)?,
         };
-        let next = next.facing(Radians(if limit.reverse { -PI } else { 0.0 }))?;
+        let next = next.facing(Radians(limit.facing))?;
         if last.length() == 0.0 {
             self.segments.clear();
             self.limits.clear();
@@ -187,8 +186,7 @@ impl SpeedLimitedPath {
         let along = self.path().map_or(0.0, |path| path.pose_at(length).heading.0);
         // That of the segment that begins there, as of a path.
         let place = self.segments.partition_point(|segment| segment.from() <= length).saturating_sub(1);
-        let reverse = self.limits.get(place).is_some_and(|limit| limit.reverse);
-        if reverse { along - PI } else { along }
+        along + self.limits.get(place).map_or(0.0, |limit| limit.facing)
     }
 
     /// How near to its end \[m\] a robot has arrived, of these two: where it drives, and where it turns in place.
@@ -234,7 +232,7 @@ impl SpeedLimitedPath {
         let mut stretches: Vec<SpeedLimitSpan> = Vec::new();
         for (place, (segment, limit)) in self.segments.iter().zip(&self.limits).enumerate() {
             let (length, top) = (segment.length().min(until - segment.from()).max(0.0), limit.top.min(speed));
-            if place > 0 && self.changes_gear_after(place - 1) {
+            if place > 0 && self.changes_facing_after(place - 1) {
                 stretches.push(SpeedLimitSpan { length: 0.0, top: 0.0 });
             }
             match stretches.last_mut() {
@@ -284,7 +282,7 @@ impl SpeedLimitedPath {
         })
     }
 
-    /// The first turn in place that takes time, or change of gear, among its segments from this place on.
+    /// The first turn in place that takes time, or change of facing, among its segments from this place on.
     pub(super) fn in_place(&self, from: usize) -> Option<TurnInPlace> {
         let segments = self.segments.iter().zip(&self.limits).enumerate().skip(from);
         segments.into_iter().find_map(|(place, (segment, SegmentLimit { top, stands, .. }))| {
@@ -293,14 +291,14 @@ impl SpeedLimitedPath {
                 return Some(TurnInPlace { segment: place, at: segment.from(), duration });
             }
             let at = segment.from() + segment.length();
-            self.changes_gear_after(place).then_some(TurnInPlace { segment: place, at, duration: SHIFT })
+            self.changes_facing_after(place).then_some(TurnInPlace { segment: place, at, duration: SHIFT })
         })
     }
 
-    /// Whether the gear changes at the end of a segment.
-    fn changes_gear_after(&self, place: usize) -> bool {
+    /// Whether the angle to the heading changes at the end of a segment.
+    fn changes_facing_after(&self, place: usize) -> bool {
         let [before, after] = [place, place + 1].map(|place| self.limits.get(place));
-        before.zip(after).is_some_and(|(before, after)| before.reverse != after.reverse)
+        before.zip(after).is_some_and(|(before, after)| before.facing != after.facing)
     }
 
     /// The least radius of an arc that is driven \[m\]; infinite without any.
@@ -399,6 +397,7 @@ impl OwnedMotion {
 mod tests {
     use super::*;
     use pcr_core::{Point, Radians};
+    use pcr_formats::scenario::REVERSE;
 
     #[test]
     fn the_rest_of_a_drive_goes_on_as_it_does() {
@@ -428,9 +427,13 @@ mod tests {
         let pose = Pose { position: Point::new(1.0, 2.0), heading: Radians(0.3) };
         let arc = PathSegment::Arc { radius: 0.5, sweep: -1.0 };
         let course = SpeedLimitedPath::new(pose, &[PathSegment::Line { length: 1.0 }, arc, arc]).expect("a course");
-        let gears =
-            [PathSegment::Cusp, arc, PathSegment::Line { length: 0.5 }, PathSegment::Cusp, PathSegment::Cusp, arc];
-        let shunting = SpeedLimitedPath::new(pose, &[&gears[..], &gears].concat()).expect("a course");
+        let facings = |before: f64, after: f64| {
+            let [change, back] =
+                [[before, after], [after, before]].map(|[before, after]| PathSegment::Facing { before, after });
+            [change, arc, PathSegment::Line { length: 0.5 }, back, change, arc]
+        };
+        let there_and_back = [facings(0.0, REVERSE), facings(REVERSE, 0.0)].concat();
+        let shunting = SpeedLimitedPath::new(pose, &there_and_back).expect("a course");
         for from in [0.0, 0.4, 0.5, 1.2, 1.9, 2.0, 2.7, 3.0] {
             let rest = shunting.from(from).expect("its rest");
             assert_eq!(

@@ -1,7 +1,7 @@
 //! Converts lines and arcs anywhere in the plane to one path: a G1 chain of lines and arcs.
 //!
-//! Where two pieces meet at an angle, the vehicle turns in place, or passes without a stop if the angle is no more than [`KINK`]. Where the vehicle goes on in the other gear, it comes to rest as well, and turns by what its own
-//! heading differs. A line is aimed at its end from the point that the path has really reached, so
+//! Where two pieces meet at an angle, the vehicle turns in place, or passes without a stop if the angle is no more than [`KINK`]. Where the vehicle goes on in the other gear, or at another angle to its heading, it comes to rest as
+//! well, and turns by what its own heading differs. A line is aimed at its end from the point that the path has really reached, so
 //! that gaps do not add up. The largest distance from the requested geometry is recorded.
 
 use crate::plane_geometry::{distance, within_half_turn, wrapped};
@@ -31,7 +31,7 @@ pub(super) struct LimitedSegment {
 impl LimitedSegment {
     /// Whether the vehicle is at rest before and after it.
     pub(super) fn is_stop(&self) -> bool {
-        matches!(self.shape, PathSegment::Turn { .. } | PathSegment::Cusp)
+        matches!(self.shape, PathSegment::Turn { .. } | PathSegment::Facing { .. })
     }
 }
 
@@ -45,8 +45,8 @@ pub(super) struct LimitedPathBuilder {
     at: [f64; 2],
     /// Direction of travel \[rad\].
     heading: f64,
-    /// Whether it drives backward, and whether it does so in what is added from now on.
-    reverse: [bool; 2],
+    /// The angle from the direction of travel to the heading of the vehicle, and that in what is added from now on \[rad\].
+    facing: [f64; 2],
     deviation: f64,
     turned: f64,
     speed: Option<f64>,
@@ -72,9 +72,9 @@ impl LimitedPathBuilder {
         (self.speed, self.rotation) = (speed, rotation);
     }
 
-    /// The vehicle drives backward on what is added from now on, or ahead.
-    pub(super) fn set_reverse(&mut self, reverse: bool) {
-        self.reverse[1] = reverse;
+    /// The vehicle travels at this angle from its direction to its heading on what is added from now on \[rad\].
+    pub(super) fn set_facing(&mut self, facing: f64) {
+        self.facing[1] = facing;
     }
 
     /// Adds a line to a point from where the path is, which ought to be `from`.
@@ -101,7 +101,7 @@ impl LimitedPathBuilder {
         match piece.shape {
             PathSegment::Line { .. } => self.line(piece.start, piece.end()),
             // No curve of a file has one.
-            PathSegment::Turn { .. } | PathSegment::Kink { .. } | PathSegment::Cusp => {}
+            PathSegment::Turn { .. } | PathSegment::Kink { .. } | PathSegment::Facing { .. } => {}
             PathSegment::Arc { radius, sweep } => {
                 if radius * sweep == 0.0 {
                     return;
@@ -118,13 +118,14 @@ impl LimitedPathBuilder {
     /// Turns in place to a heading; the path begins here if it has not begun.
     fn face(&mut self, at: [f64; 2], heading: f64) {
         if self.start.is_none() {
-            let own = if self.reverse[1] { wrapped(heading + PI) } else { heading };
+            let own = if self.facing[1] == 0.0 { heading } else { wrapped(heading + self.facing[1]) };
             (self.at, self.heading) = (at, own);
             self.start = Some([at[0], at[1], own]);
         }
-        if self.reverse[0] != self.reverse[1] {
-            self.reverse[0] = self.reverse[1];
-            self.push(PathSegment::Cusp);
+        let [before, after] = self.facing;
+        if before != after {
+            self.facing[0] = after;
+            self.push(PathSegment::Facing { before, after });
         }
         let sweep = within_half_turn(heading - self.heading);
         if sweep.abs() > KINK {

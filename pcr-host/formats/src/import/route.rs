@@ -179,8 +179,8 @@ fn corner_arcs(
     steps.iter().enumerate().map(arc).collect()
 }
 
-/// The path along some edges, from the node where it begins, on which the vehicle drives backward where it faces so, or which it travels in
-/// one gear.
+/// The path along some edges, from the node where it begins, on which the vehicle faces as its edges say, or which it travels along its
+/// heading.
 fn trace(layout: &Layout, from: usize, steps: &[RouteStep<'_>], in_gears: bool) -> Result<LimitedPath, ImportError> {
     let at = |node: usize| layout.position(node);
     let arcs = corner_arcs(layout, from, steps, layout.corner_radius);
@@ -191,7 +191,7 @@ fn trace(layout: &Layout, from: usize, steps: &[RouteStep<'_>], in_gears: bool) 
     for (k, (step, arc)) in steps.iter().zip(arcs).enumerate() {
         let (edge, target) = (step.edge, at(step.target()));
         tracer.limit(step.speed(), edge.rotation);
-        tracer.set_reverse(in_gears && step.facing() == Facing::Backward);
+        tracer.set_facing(step.facing().angle().filter(|_| in_gears).unwrap_or(0.0));
         deviation = deviation.max(step.deviation() + longer);
         turned = turned.max(step.turned() + turn_over(&edge.curve, longer));
         longer += edge.longer;
@@ -386,8 +386,8 @@ pub(super) fn mission(
     Ok(Some(agent(id, &trace, &vehicle, 0.0)))
 }
 
-/// The path of a vehicle along some edges, from the node where it begins, and the vehicle as it is on it: it changes its gear where it is
-/// known which way its outline faces on every edge.
+/// The path of a vehicle along some edges, from the node where it begins, and the vehicle as it is on it: it changes its facing where it
+/// is known which way its outline faces on every edge.
 fn travel(
     layout: &Layout,
     vehicle: &VehicleTraits,

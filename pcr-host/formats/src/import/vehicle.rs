@@ -2,7 +2,7 @@
 
 use super::{ImportError, InputFormat, WarningCode, Warnings};
 use crate::footprint::Footprint;
-use std::f64::consts::PI;
+use crate::scenario::REVERSE;
 use std::path::PathBuf;
 
 /// Where the size of a vehicle comes from.
@@ -52,17 +52,29 @@ pub enum Facing {
     Backward,
     /// One of both, which of them is not known.
     Either,
+    /// At another angle to its path, which is the same all along: it travels sideways.
+    Sideways(FacingAngle),
     /// Any way.
     Any,
 }
 
+/// An angle from the direction of travel to the heading. Angles are the same if their numbers are.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub struct FacingAngle(u64);
+
 impl Facing {
+    /// At an angle from the direction of travel to the heading \[rad\].
+    pub(super) fn sideways(angle: f64) -> Self {
+        Self::Sideways(FacingAngle(angle.to_bits()))
+    }
+
     /// What holds if either of two may.
     #[must_use]
     pub fn or(self, other: Self) -> Self {
         match (self, other) {
             (Self::Any, _) | (_, Self::Any) => Self::Any,
             (a, b) if a == b => a,
+            (Self::Sideways(_), _) | (_, Self::Sideways(_)) => Self::Any,
             _ => Self::Either,
         }
     }
@@ -71,12 +83,13 @@ impl Facing {
     pub fn angle(self) -> Option<f64> {
         match self {
             Self::Ahead => Some(0.0),
-            Self::Backward => Some(PI),
+            Self::Backward => Some(REVERSE),
+            Self::Sideways(FacingAngle(angle)) => Some(f64::from_bits(angle)),
             Self::Either | Self::Any => None,
         }
     }
 
-    /// Whether a vehicle that faces so on the parts of a path drives ahead on some of them and backward on others, and it is known of each.
+    /// Whether a vehicle that faces so on the parts of a path faces one way on some of them and another way on others, and it is known of each.
     pub(super) fn changes(parts: impl Iterator<Item = Self>) -> bool {
         let all = parts.map(Self::angle).collect::<Option<Vec<_>>>();
         all.is_some_and(|all| all.windows(2).any(|pair| pair[0] != pair[1]))
@@ -86,8 +99,7 @@ impl Facing {
     #[must_use]
     pub fn then(self, other: Self) -> Self {
         match (self, other) {
-            (Self::Ahead, Self::Ahead) => Self::Ahead,
-            (Self::Backward, Self::Backward) => Self::Backward,
+            (a, b) if a == b && a.angle().is_some() => a,
             _ => Self::Any,
         }
     }
@@ -104,6 +116,7 @@ impl VehicleTraits {
             Facing::Backward | Facing::Either if footprint.is_same_backward() => return self.clone(),
             Facing::Backward => Some(footprint.backward()),
             Facing::Either => footprint.either_way(),
+            Facing::Sideways(FacingAngle(angle)) => Some(footprint.turned(f64::from_bits(angle))),
             Facing::Any => None,
         };
         let radius = outline.as_ref().map_or(self.radius, Footprint::circumscribed_radius).max(self.radius);

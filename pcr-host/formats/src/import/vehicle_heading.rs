@@ -1,4 +1,4 @@
-//! Which way a vehicle faces as it travels: along its path, against it, or as nobody knows.
+//! Which way a vehicle faces as it travels: along its path, against it, at another angle to it, or as nobody knows.
 
 use super::biarc::BiarcFit;
 use super::json_access::JsonObject;
@@ -70,11 +70,10 @@ pub(super) fn turn_at_nodes(given: &[(usize, f64)], edges: &mut [LayoutEdge], ou
         let is_there = |place: &usize| {
             let Some(edge) = edges.get(*place) else { return false };
             let Some((first, last)) = edge.curve.first().zip(edge.curve.last()) else { return false };
-            let faces = |heading: f64| match edge.facing[0] {
-                Facing::Ahead => is_ahead(outline, angle - heading),
-                Facing::Backward => is_ahead(outline, angle - heading - PI),
-                Facing::Either => is_ahead(outline, angle - heading) || is_ahead(outline, angle - heading - PI),
-                Facing::Any => true,
+            let faces = |heading: f64| match (edge.facing[0], edge.facing[0].angle()) {
+                (_, Some(off)) => is_ahead(outline, angle - heading - off),
+                (Facing::Any, None) => true,
+                (_, None) => [0.0, PI].iter().any(|off| is_ahead(outline, angle - heading - off)),
             };
             let at = |k: usize, heading: f64| edge.ends[k] == *node && faces(heading);
             at(0, first.heading) || at(1, last.heading_at_end())
@@ -150,10 +149,11 @@ pub(super) fn of_edge(
     };
     orientations.iter().try_for_each(|orientation| in_radians(edge, field, *orientation).map(drop))?;
     let ahead = if is_global { heading } else { Some(0.0) };
-    let facing = |orientation: &f64| match ahead.map(|ahead| wrapped(orientation - ahead).abs()) {
-        Some(off) if off <= ROUNDING => Facing::Ahead,
-        Some(off) if off >= PI - ROUNDING => Facing::Backward,
-        _ => Facing::Any,
+    let facing = |orientation: &f64| match ahead.map(|ahead| wrapped(orientation - ahead)) {
+        Some(off) if off.abs() <= ROUNDING => Facing::Ahead,
+        Some(off) if off.abs() >= PI - ROUNDING => Facing::Backward,
+        Some(off) => Facing::sideways(off),
+        None => Facing::Any,
     };
     Ok(orientations.iter().map(facing).reduce(Facing::or))
 }
@@ -213,7 +213,7 @@ pub(super) fn heading_beside(piece: &PlacedSegment, point: [f64; 2], within: f64
     let whole = piece.shape.length();
     let along = match piece.shape {
         PathSegment::Line { .. } => ahead,
-        PathSegment::Turn { .. } | PathSegment::Kink { .. } | PathSegment::Cusp => 0.0,
+        PathSegment::Turn { .. } | PathSegment::Kink { .. } | PathSegment::Facing { .. } => 0.0,
         PathSegment::Arc { radius, sweep } => {
             // The centre is to the left of an arc that turns left. Half of what is missing to a full turn is before its begin.
             let angle = ahead.atan2(radius - left * sweep.signum());

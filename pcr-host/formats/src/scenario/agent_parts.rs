@@ -126,7 +126,18 @@ impl Agent {
             end.extend(after.into_iter().flatten().take_while(|part| !part.moves()));
         }
         let ([x, y], heading) = (reached.end(), reached.heading_at_end());
-        let path: Vec<PathSegment> = self.path.iter().take(last + 1).skip(first).copied().collect();
+        let mut path: Vec<PathSegment> = self.path.iter().take(last + 1).skip(first).copied().collect();
+        // It begins with the heading of the vehicle, from which the way leads at the angle that it had before.
+        let facing = before.clone().fold(0.0, |facing, shape| match *shape {
+            PathSegment::Facing { after, .. } => after,
+            _ => facing,
+        });
+        if let Some(PathSegment::Facing { before, .. }) = path.first_mut() {
+            *before = 0.0;
+        } else if facing != 0.0 {
+            path.insert(0, PathSegment::Facing { before: 0.0, after: facing });
+            own.insert(0, Vec::new());
+        }
         let pieces = path.iter().zip(&own).flat_map(|(segment, phases)| {
             let turns = segment.takes_turning();
             phases.iter().map(move |phase| MotionPiece {
@@ -139,7 +150,7 @@ impl Agent {
         let at_start = own.iter().flatten().next().filter(|_| !pieces.first().is_some_and(|piece| piece.in_place));
         let agent = Self {
             t_start: self.t_start + until,
-            start: [x, y, heading],
+            start: [x, y, heading + facing],
             path,
             motion: MotionSpec::Profile { v0: at_start.map_or(0.0, |phase| phase.before), pieces },
             ..self.clone()

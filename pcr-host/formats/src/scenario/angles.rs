@@ -1,5 +1,6 @@
 //! Angles of a scenario, in radians or, by keys of their own, in degrees; and warnings about angles that are probably in the wrong unit.
 
+use super::facing::file_segments;
 use super::json_fields::{NumberRange, ObjectFields, ScenarioError, figure};
 use super::{MotionSpec, PathSegment, Scenario};
 use crate::warning::WarningCode;
@@ -21,6 +22,8 @@ pub(super) enum AngleField {
     Heading,
     /// Angle of an arc or of a turn in place.
     Sweep,
+    /// Angle from the direction of travel to the heading.
+    Facing,
     /// Largest speed of turns in place.
     TurnSpeed,
     /// Largest acceleration of turns in place.
@@ -30,14 +33,15 @@ pub(super) enum AngleField {
 }
 
 impl AngleField {
-    const ALL: [Self; 5] =
-        [Self::Heading, Self::Sweep, Self::TurnSpeed, Self::TurnAcceleration, Self::PieceAcceleration];
+    const ALL: [Self; 6] =
+        [Self::Heading, Self::Sweep, Self::Facing, Self::TurnSpeed, Self::TurnAcceleration, Self::PieceAcceleration];
 
     /// The keys for radians and for degrees.
     pub(super) const fn keys(self) -> [&'static str; 2] {
         match self {
             Self::Heading => ["heading", "heading_deg"],
             Self::Sweep => ["sweep", "sweep_deg"],
+            Self::Facing => ["facing", "facing_deg"],
             Self::TurnSpeed => ["turn_v_max", "turn_v_max_deg"],
             Self::TurnAcceleration => ["turn_a_max", "turn_a_max_deg"],
             Self::PieceAcceleration => ["turn_accel", "turn_accel_deg"],
@@ -47,7 +51,7 @@ impl AngleField {
     /// What messages call more than it should be.
     const fn excess(self) -> &'static str {
         match self {
-            Self::Heading | Self::Sweep => "is more than one turn in radians",
+            Self::Heading | Self::Sweep | Self::Facing => "is more than one turn in radians",
             Self::TurnSpeed => "is more than one turn a second in radians",
             Self::TurnAcceleration | Self::PieceAcceleration => {
                 "is more than one turn a second, each second, in radians"
@@ -57,7 +61,7 @@ impl AngleField {
 
     const fn range(self) -> NumberRange {
         match self {
-            Self::Heading | Self::Sweep | Self::PieceAcceleration => NumberRange::Any,
+            Self::Heading | Self::Sweep | Self::Facing | Self::PieceAcceleration => NumberRange::Any,
             Self::TurnSpeed | Self::TurnAcceleration => NumberRange::Positive,
         }
     }
@@ -70,7 +74,7 @@ impl AngleField {
 
 /// The angles in radians that are above one turn, by field: the first one with its place, and how many there are.
 #[derive(Debug, Default)]
-pub(super) struct Doubts([Option<(String, f64, usize)>; 5]);
+pub(super) struct Doubts([Option<(String, f64, usize)>; 6]);
 
 impl Doubts {
     /// Reads an angle \[rad\], and notes it if it is given in radians and above one turn.
@@ -124,7 +128,8 @@ impl Scenario {
             };
             let turning = pieces.iter().filter(|piece| piece.in_place).map(|piece| piece.acceleration);
             let sweeps = agent.path.iter().map(PathSegment::sweep);
-            sweeps.chain(turning).chain([agent.start[2]]).any(|angle| angle.abs() > DOUBTED)
+            let facings = file_segments(&agent.path).map(|(_, facing)| facing);
+            sweeps.chain(facings).chain(turning).chain([agent.start[2]]).any(|angle| angle.abs() > DOUBTED)
         })
     }
 }

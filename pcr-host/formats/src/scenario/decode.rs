@@ -2,12 +2,14 @@
 
 use super::agent_name::AgentName;
 use super::angles::{AngleField, Doubts, RADIANS, UNIT};
-use super::gear;
+use super::facing;
+use super::file_version::{FACINGS, KNOWN_VERSIONS, TURNS, VERSION, VersionFaults};
 use super::json_fields::{
     DecodeLocation, LIMIT, NumberRange, ObjectFields, ScenarioError, brief, figure, parse_integer,
 };
 use super::labels;
 use super::outline::{loads, outline};
+use super::path_decode::path;
 use super::round_trip::{RoundTripProfile, speed_after};
 use super::{Agent, MotionPiece, MotionSpec, PathSegment, Scenario};
 use super::{old_turns, turns};
@@ -25,17 +27,8 @@ const FIELDS: [&str; 6] = ["format", "version", "name", UNIT, "agents", "warning
 /// Relative difference between the travelled length and the length of the path that is still scaled away: what the library takes, 2⁻²⁰.
 pub const LENGTH_TOLERANCE: f64 = 1.0 / (1_u64 << -pcr_core::LENGTH_TOLERANCE_LOG2) as f64;
 
-/// Segments of a path that the core can number. An arc counts once for each turn begun.
-pub(crate) const MOST_SEGMENTS: usize = u16::MAX as usize;
-
 /// Name of the format.
 pub(super) const FORMAT: &str = "pcr-scenario";
-pub(super) const VERSION: u64 = 1;
-/// The version of files in which segments have gears.
-pub(super) const GEARS: u64 = 2;
-/// The version of files in which turns in place have no length.
-pub(super) const TURNS: u64 = 3;
-
 impl Scenario {
     /// The scenario in a JSON text; a byte order mark at its start is skipped.
     ///
@@ -122,7 +115,7 @@ impl Scenario {
         let version = match fields.get("version").map(|version| (version, &version.data)) {
             None => VERSION,
             Some((given, JsonData::Number(version))) => match parse_integer(version) {
-                Some(version @ VERSION..=TURNS) => version,
+                Some(version @ VERSION..=FACINGS) => version,
                 _ => return Err(fields.unexpected("version", given, KNOWN_VERSIONS)),
             },
             Some((given, _)) => return Err(fields.unexpected("version", given, KNOWN_VERSIONS)),
@@ -167,36 +160,6 @@ fn is_scenario(json: &JsonNode<'_>) -> Result<(), ScenarioError> {
             Err(DecodeLocation::default().error(given.position, "", format!("{name}: {why}")))
         }
         _ => Ok(()),
-    }
-}
-
-/// The versions that are read, for messages.
-const KNOWN_VERSIONS: &str = "1, 2 or 3, all that this pcr knows,";
-
-/// What is not in files of all versions: the error of the first of each, as the version of a file may be behind its agents.
-#[derive(Default)]
-struct VersionFaults {
-    /// Of gears.
-    gear: Option<ScenarioError>,
-    /// Of turns without a length.
-    turn: Option<ScenarioError>,
-    /// Of turns with a length.
-    long_turn: Option<ScenarioError>,
-}
-
-impl VersionFaults {
-    /// Refuses what the version does not have. An agent before it may be refused for another reason.
-    fn check(&self, version: u64) -> Result<(), ScenarioError> {
-        let gear = self.gear.as_ref().filter(|_| version < GEARS);
-        let turn = self.turn.as_ref().filter(|_| version < TURNS);
-        let long_turn = self.long_turn.as_ref().filter(|_| version >= TURNS);
-        gear.or(turn).or(long_turn).map_or(Ok(()), |fault| Err(fault.clone()))
-    }
-
-    /// Notes that something is there from version 3 on.
-    fn needs_turns(&mut self, place: DecodeLocation<'_>, json: &JsonNode<'_>, field: &str) {
-        let problem = format!("it is there from version {TURNS} on; give \"version\": {TURNS}");
-        self.turn.get_or_insert_with(|| place.error(json.position, field, problem));
     }
 }
 
@@ -286,16 +249,20 @@ impl Agent {
         ];
         let mut path = path(&fields, place, doubts, versions)?;
         let motion = motion(&fields, &mut path, doubts, versions)?;
-        let loads = loads(&fields, path.len())?;
-        if !loads.is_empty() && path.contains(&PathSegment::Cusp) {
-            return Err(fields.refused("loads", "there are none yet on a path with reverse gear"));
+        let places: Vec<usize> = (0..path.len()).filter(|place| !facing::changes(&path[*place])).collect();
+        let mut loads = loads(&fields, places.len())?;
+        for load in &mut loads {
+            let [first, last] = load.segments.map(|segment| places[segment]);
+            // The vehicle has the load already where its facing changes before it.
+            let before = first.checked_sub(1).filter(|before| facing::changes(&path[*before]));
+            load.segments = [before.unwrap_or(first), last];
         }
         let AgentName { label, is_text, .. } = name;
         let agent = Self { id, label, radius, footprint, loads, margin, t_start, start, path, motion };
         agent.ends_in_time(&fields)?;
-        if let Some((segment, speed)) = agent.speed_at_cusp() {
+        if let Some((segment, speed)) = agent.speed_at_change() {
             let problem = format!(
-                "{} m/s at the end of segment {}; allowed is 0, because the gear changes there",
+                "{} m/s at the end of segment {}; allowed is 0, because the gear or facing changes there",
                 figure(speed),
                 segment + 1
             );
@@ -323,63 +290,6 @@ impl Agent {
     }
 }
 
-/// The path of an agent, if it is neither too long nor of too many segments.
-fn path(
-    fields: &ObjectFields<'_>,
-    place: DecodeLocation<'_>,
-    doubts: &mut Doubts,
-    versions: &mut VersionFaults,
-) -> Result<Vec<PathSegment>, ScenarioError> {
-    let given = fields.array("path")?;
-    let mut path = Vec::with_capacity(given.len());
-    let mut reverse = false;
-    // An arc that stands for a turn was one for which the vehicle stops only where the motion says so.
-    let stops = fields.get("profile").is_some() || given.iter().any(|segment| kind(segment) == Some("turn"));
-    for (index, json) in given.iter().enumerate() {
-        let place = place.part("segment", index);
-        let (segment, own) = PathSegment::decode(json, place, doubts)?;
-        if let Some((at, _)) = own {
-            let problem = format!("there are gears from version {GEARS} on; give \"version\": {GEARS}");
-            versions.gear.get_or_insert_with(|| place.error(at, "gear", problem));
-        }
-        let segment = match segment {
-            PathSegment::Arc { radius: old_turns::RADIUS, sweep } if stops => PathSegment::Turn { sweep },
-            PathSegment::Arc { radius: old_turns::RADIUS, sweep } => PathSegment::Kink { sweep },
-            other => other,
-        };
-        if kind(json) == Some("kink") {
-            versions.needs_turns(place, json, "kind");
-        }
-        // A turn in place has no gear.
-        let is_turn = matches!(segment, PathSegment::Turn { .. } | PathSegment::Kink { .. });
-        let next = if is_turn { reverse } else { own.is_some_and(|(_, reverse)| reverse) };
-        if next != reverse {
-            path.push(PathSegment::Cusp);
-            reverse = next;
-        }
-        path.push(segment);
-    }
-    let length: f64 = path.iter().map(PathSegment::length).sum();
-    let segments: f64 = path.iter().map(PathSegment::turns).sum();
-    let problem = if length > LIMIT {
-        format!("{} m long; allowed is up to {LIMIT:e}", figure(length))
-    } else if segments > MOST_SEGMENTS as f64 {
-        format!("{segments} segments, each turn of an arc counted; allowed are up to {MOST_SEGMENTS}")
-    } else {
-        return Ok(path);
-    };
-    Err(fields.refused("path", problem))
-}
-
-/// What a segment in a file is said to be.
-fn kind<'j>(segment: &'j JsonNode<'_>) -> Option<&'j str> {
-    let JsonData::Object(members) = &segment.data else { return None };
-    match members.iter().find(|(key, _)| key == "kind").map(|(_, kind)| &kind.data) {
-        Some(JsonData::Text(kind)) => Some(kind),
-        _ => None,
-    }
-}
-
 /// The profile that is given, or from rest to rest, or with turns in place.
 fn motion(
     fields: &ObjectFields<'_>,
@@ -400,54 +310,13 @@ fn motion(
     let of_turns = [of_turns(AngleField::TurnSpeed)?, of_turns(AngleField::TurnAcceleration)?];
     let profile = |pieces| MotionSpec::Profile { v0: 0.0, pieces };
     Ok(match (limit("v_max")?, limit("a_max")?) {
-        (Some(v_max), Some(a_max)) if moves && path.contains(&PathSegment::Cusp) => {
-            profile(gear::pieces(path, [v_max, a_max], of_turns))
+        (Some(v_max), Some(a_max)) if moves && path.iter().any(facing::changes) => {
+            profile(facing::pieces(path, [v_max, a_max], of_turns))
         }
         (Some(v_max), Some(a_max)) if turns => profile(turns::pieces(path, [v_max, a_max], of_turns)),
         (Some(v_max), Some(a_max)) if moves => MotionSpec::RestToRest { v_max, a_max },
         _ => MotionSpec::decode(fields, path, doubts, versions)?,
     })
-}
-
-impl PathSegment {
-    /// The segment, and its gear if it is given: where, and whether it is reverse.
-    fn decode(
-        json: &JsonNode<'_>,
-        place: DecodeLocation<'_>,
-        doubts: &mut Doubts,
-    ) -> Result<(Self, Option<(Position, bool)>), ScenarioError> {
-        let gear = |fields: &ObjectFields<'_>| match fields.get("gear").map(|gear| (gear, &gear.data)) {
-            None => Ok(None),
-            Some((gear, JsonData::Text(name))) if name == "reverse" => Ok(Some((gear.position, true))),
-            Some((gear, JsonData::Text(name))) if name == "forward" => Ok(Some((gear.position, false))),
-            Some((gear, _)) => Err(fields.unexpected("gear", gear, "\"forward\" or \"reverse\"")),
-        };
-        match kind(json) {
-            Some("line") => {
-                let fields = place.fields(json, &["kind", "length", "gear"])?;
-                Ok((Self::Line { length: fields.number("length", NumberRange::NotNegative)? }, gear(&fields)?))
-            }
-            Some("arc") => {
-                let fields = place.fields(json, &["kind", "radius", "sweep", "sweep_deg", "gear"])?;
-                let radius = fields.number("radius", NumberRange::Positive)?;
-                Ok((Self::Arc { radius, sweep: doubts.angle(&fields, AngleField::Sweep)? }, gear(&fields)?))
-            }
-            Some(of_angle @ ("turn" | "kink")) => {
-                let fields = place.fields(json, &["kind", "sweep", "sweep_deg"])?;
-                let sweep = doubts.angle(&fields, AngleField::Sweep)?;
-                Ok((if of_angle == "turn" { Self::Turn { sweep } } else { Self::Kink { sweep } }, None))
-            }
-            _ => {
-                let fields = place.fields(json, &["kind", "length", "radius", "sweep", "sweep_deg", "gear"])?;
-                let kind = fields.required("kind")?;
-                Err(fields.error(
-                    kind.position,
-                    "kind",
-                    format!("{}; allowed is \"line\", \"arc\", \"turn\" or \"kink\"", brief(kind)),
-                ))
-            }
-        }
-    }
 }
 
 /// Pieces of a profile in a file, with the fields of each, unless they are converted.
@@ -564,7 +433,7 @@ impl GivenPieces<'_> {
         // Number in the file, length of the path before it, and angle.
         let mut turns = path.iter().enumerate().filter_map(|(segment, shape)| {
             before += shape.length();
-            let file = segment - path.iter().take(segment).filter(|other| **other == PathSegment::Cusp).count();
+            let file = segment - path.iter().take(segment).filter(|other| facing::changes(other)).count();
             shape.takes_turning().then(|| (file + 1, before, shape.sweep().abs()))
         });
         let (mut speed, mut fastest, mut travelled, mut rotation) = (v0, v0, 0.0, 0.0);

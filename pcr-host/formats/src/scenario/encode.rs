@@ -1,9 +1,10 @@
 //! Encodes a scenario as a file.
 
 use super::angles::{RADIANS, UNIT};
-use super::decode::{FORMAT, GEARS, TURNS, VERSION};
-use super::gear::GearShifts;
-use super::{Agent, LoadOutline, MotionPiece, MotionSpec, PathSegment, Scenario};
+use super::decode::FORMAT;
+use super::facing::file_segments;
+use super::file_version::{FACINGS, GEARS, TURNS, VERSION};
+use super::{Agent, LoadOutline, MotionPiece, MotionSpec, PathSegment, REVERSE, Scenario};
 use crate::footprint::Footprint;
 use serde_json::Value;
 use std::fmt::{self, Display};
@@ -37,9 +38,12 @@ impl Agent {
     /// The version of files that can have it.
     fn version(&self) -> u64 {
         let has_kinks = self.path.iter().any(|segment| matches!(segment, PathSegment::Kink { .. }));
-        if has_kinks || self.motion.turns_in_place() {
+        let has_angles = file_segments(&self.path).any(|(_, facing)| facing != 0.0 && facing != REVERSE);
+        if has_angles {
+            FACINGS
+        } else if has_kinks || self.motion.turns_in_place() {
             TURNS
-        } else if self.changes_gear() {
+        } else if self.changes_facing() {
             GEARS
         } else {
             VERSION
@@ -60,7 +64,8 @@ impl Display for AsJson<&Agent> {
         }
         write!(f, "{}, ", AsJson((*radius, footprint.as_ref())))?;
         if !loads.is_empty() {
-            let loads = loads.iter().map(|LoadOutline { segments: [first, last], radius, footprint }| {
+            let loads = loads.iter().map(|LoadOutline { segments, radius, footprint }| {
+                let [first, last] = segments.map(|segment| self.0.file_segment(segment));
                 let outline = AsJson((*radius, footprint.as_ref()));
                 format!("{{ \"segments\": [{}, {}], {outline} }}", first + 1, last + 1)
             });
@@ -71,11 +76,15 @@ impl Display for AsJson<&Agent> {
         }
         write!(f, "\"t_start\": {t_start:?}, ")?;
         write!(f, "\"start\": {{ \"x\": {x:?}, \"y\": {y:?}, \"heading\": {heading:?} }}, \"path\": [")?;
-        for (k, (segment, reverse)) in path.in_gear().enumerate() {
+        for (k, (segment, facing)) in file_segments(path).enumerate() {
             let comma = if k > 0 { "," } else { "" };
-            let gear = if reverse { ", \"gear\": \"reverse\"" } else { "" };
+            let gear = match facing {
+                0.0 => String::new(),
+                REVERSE => ", \"gear\": \"reverse\"".to_owned(),
+                angle => format!(", \"facing\": {angle:?}"),
+            };
             match segment {
-                PathSegment::Cusp => {}
+                PathSegment::Facing { .. } => {}
                 PathSegment::Line { length } => {
                     write!(f, "{comma} {{ \"kind\": \"line\", \"length\": {length:?}{gear} }}")?;
                 }

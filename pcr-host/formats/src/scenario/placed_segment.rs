@@ -27,7 +27,7 @@ impl PlacedSegment {
     pub fn heading_at_end(&self) -> f64 {
         match self.shape {
             PathSegment::Line { .. } => self.heading,
-            PathSegment::Cusp => self.heading + std::f64::consts::PI,
+            PathSegment::Facing { before, after } => self.heading + (before - after),
             shape => self.heading + shape.sweep(),
         }
     }
@@ -36,7 +36,7 @@ impl PlacedSegment {
     pub fn end(&self) -> [f64; 2] {
         let (chord, direction) = match self.shape {
             PathSegment::Line { length } => (length, self.heading),
-            PathSegment::Turn { .. } | PathSegment::Kink { .. } | PathSegment::Cusp => return self.start,
+            PathSegment::Turn { .. } | PathSegment::Kink { .. } | PathSegment::Facing { .. } => return self.start,
             PathSegment::Arc { radius, sweep } => {
                 (2.0 * radius * (sweep.abs() / 2.0).sin(), self.heading + sweep / 2.0)
             }
@@ -74,7 +74,8 @@ impl PlacedSegment {
     /// The same, travelled the other way.
     pub fn reversed(&self) -> Self {
         let shape = match self.shape {
-            PathSegment::Line { .. } | PathSegment::Cusp => self.shape,
+            PathSegment::Line { .. } => self.shape,
+            PathSegment::Facing { before, after } => PathSegment::Facing { before: after, after: before },
             PathSegment::Arc { radius, sweep } => PathSegment::Arc { radius, sweep: -sweep },
             PathSegment::Turn { sweep } => PathSegment::Turn { sweep: -sweep },
             PathSegment::Kink { sweep } => PathSegment::Kink { sweep: -sweep },

@@ -9,9 +9,9 @@ fn is_turn(segment: &PathSegment) -> bool {
 }
 
 impl Agent {
-    /// Whether its path has a turn in place, or a change of gear: there it stands.
+    /// Whether its path has a turn in place, or a change of facing: there it stands.
     pub fn turns_in_place(&self) -> bool {
-        self.changes_gear() || self.path.iter().any(PathSegment::takes_turning)
+        self.changes_facing() || self.path.iter().any(PathSegment::takes_turning)
     }
 }
 

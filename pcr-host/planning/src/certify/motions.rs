@@ -73,7 +73,7 @@ impl MotionCertificate {
                 .map_err(|misread| misread.to_string())
                 .and_then(|()| of_discs(&agents, &times).map_err(|wrong| wrong.to_string()))
         } else {
-            let bodies = outlines::bodies(agents.clone(), &motions);
+            let bodies = outlines::bodies(&fleet, agents.clone(), &motions);
             outlines::as_given::<S>(&given, &agents, &bodies)
                 .map_err(|misread| misread.to_string())
                 .and_then(|()| of_outlines(&bodies, &times).map_err(|wrong| wrong.to_string()))

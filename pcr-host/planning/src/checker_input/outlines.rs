@@ -1,14 +1,14 @@
 //! Bodies and their tables as plain numbers for [`pcr_certify::outline`]: outlines, and the discs beside them as outlines of one corner.
 
 use super::{RoundTripError, ends_of, same_disc, same_motion};
-use crate::fleet::{HostScalar, growth_of_turns};
+use crate::fleet::{Fleet, HostScalar, PathTurn, growth_of_turns};
 use pcr_certify::outline::{
     RawBody, RawBodySegment, RawCourse, RawHeading, RawOutline, RawOutlinePair, RawOutlinePiece,
 };
 use pcr_certify::raw::{RawAgent, RawAngle, RawBranch, RawPair};
 use pcr_core::{Curve, Motion, RegionRef, TurnSide, excess};
 use pcr_formats::scenario::{Agent, Scenario};
-use std::f64::consts::{PI, TAU};
+use std::f64::consts::TAU;
 
 /// What headings on both sides of a joint may differ by: they are one number, but for the rounding of the checker \[rad\].
 const JUMP: f64 = 1e-12;
@@ -23,35 +23,31 @@ pub(crate) fn is_body<S: HostScalar>(motion: &Motion<'_, S>) -> bool {
     is_outline(motion) || motion.path().segments().iter().any(|segment| matches!(segment.curve(), Curve::Pivot { .. }))
 }
 
-/// The bodies of motions whose paths and times are those of these agents.
-pub fn bodies<S: HostScalar>(agents: Vec<RawAgent>, motions: &[Motion<'_, S>]) -> Vec<RawBody> {
-    agents.into_iter().zip(motions).map(|(agent, motion)| body(agent, motion)).collect()
+/// The bodies of a fleet, whose paths and times are those of these agents.
+pub fn bodies<S: HostScalar>(fleet: &Fleet<S>, agents: Vec<RawAgent>, motions: &[Motion<'_, S>]) -> Vec<RawBody> {
+    let all = agents.into_iter().zip(motions).enumerate();
+    all.map(|(place, (agent, motion))| body(agent, motion, fleet.headings(place).1)).collect()
 }
 
-fn body<S: HostScalar>(agent: RawAgent, motion: &Motion<'_, S>) -> RawBody {
+fn body<S: HostScalar>(agent: RawAgent, motion: &Motion<'_, S>, turns: &[PathTurn<S>]) -> RawBody {
     let outline = motion.outline();
     let corners = outline.corners().iter().map(|corner| [corner.at().x.to_f64(), corner.at().y.to_f64()]);
     let corners: Vec<[f64; 2]> = if is_outline(motion) { corners.collect() } else { vec![[0.0; 2]] };
-    // Turns without a length are those that move no point by more than rounding does, and half turns of the path where the gear changes,
-    // where the body keeps its heading.
-    let cusps = [PI, -PI].map(|half| S::angle(half).map(S::held_angle));
-    let is_cusp = |turn: &RawAngle| cusps.contains(&Some(*turn));
-    let turned = agent.path.segments.iter().flat_map(|segment| &segment.turns).filter(|turn| !is_cusp(turn));
-    let turned = turned.map(|turn| match turn {
-        RawAngle::Radians(radians) => radians.abs(),
-        RawAngle::Turns(turns) => turns.abs() * TAU,
+    // Turns without a length are those that move no point by more than rounding does, and turns of the path where the body keeps its
+    // heading, but for what the rounding of three angles of the format leaves.
+    let mut was = 0.0;
+    let turned = turns.iter().map(|turn| {
+        let by = S::radians(turn.by);
+        let off = turn.facing.map_or(by, |facing| by - (was - S::radians(facing)));
+        was = turn.facing.map_or(was, S::radians);
+        (off - TAU * (off / TAU).round()).abs()
     });
-    let mut facing = RawAngle::Turns(0.0);
     let jump = turned.fold(0.0, f64::max) * (1.0 + 1e-9) + JUMP;
+    let mut facing = RawAngle::Turns(0.0);
     let curves = motion.path().segments().iter().map(|segment| segment.curve());
-    let segments = agent.path.segments.into_iter().zip(curves).map(|(segment, curve)| {
-        for turn in segment.turns.iter().filter(|turn| is_cusp(turn)) {
-            facing = match (facing, *turn) {
-                (RawAngle::Turns(0.0), RawAngle::Radians(by)) => RawAngle::Radians(-by),
-                (RawAngle::Turns(0.0), RawAngle::Turns(by)) => RawAngle::Turns(-by),
-                _ => RawAngle::Turns(0.0),
-            };
-        }
+    let segments = agent.path.segments.into_iter().zip(curves).enumerate().map(|(place, (segment, curve))| {
+        let here = turns.iter().rev().find(|turn| turn.before == place && turn.facing.is_some());
+        facing = here.and_then(|turn| turn.facing).map_or(facing, S::held_angle);
         RawBodySegment {
             course: match curve {
                 Curve::Pivot { lever, turn: TurnSide::Left } => RawCourse::Pivot { lever: lever.to_f64() },

@@ -156,7 +156,7 @@ impl UnsafeDelayModel {
                 let motions = fleet.motions();
                 let held = checker_input::agents(&fleet, &motions, &ids);
                 if motions.iter().any(outlines::is_body) {
-                    outlines::as_given::<f64>(&parts, &held, &outlines::bodies(held.clone(), &motions))
+                    outlines::as_given::<f64>(&parts, &held, &outlines::bodies(&fleet, held.clone(), &motions))
                 } else {
                     checker_input::as_given::<f64>(&parts, &held)
                 }

@@ -99,7 +99,10 @@ fn of_path<S: HostScalar>(agent: &Agent) -> RoundingBounds {
             PathSegment::Turn { sweep } | PathSegment::Kink { sweep } => {
                 PathSegment::Kink { sweep: held_angle::<S>(sweep) }
             }
-            PathSegment::Cusp => PathSegment::Kink { sweep: held_angle::<S>(PI) },
+            // By what the angles differ in the format.
+            PathSegment::Facing { before, after } => {
+                PathSegment::Kink { sweep: held_angle::<S>(before) - held_angle::<S>(after) }
+            }
         };
         let differs = next.shape.length() - length;
         longer += differs;

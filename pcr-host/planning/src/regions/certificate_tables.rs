@@ -27,7 +27,7 @@ pub fn table_of<S: HostScalar>(scenario: &Scenario) -> Result<Vec<CertificateTab
     let has_outlines = motions.iter().any(outlines::is_body);
     let agents = checker_input::agents(&fleet, &motions, &ids);
     if has_outlines {
-        outlines::as_given::<S>(&given, &agents, &outlines::bodies(agents.clone(), &motions))
+        outlines::as_given::<S>(&given, &agents, &outlines::bodies(&fleet, agents.clone(), &motions))
     } else {
         checker_input::as_given::<S>(&given, &agents)
     }
@@ -39,7 +39,7 @@ pub fn table_of<S: HostScalar>(scenario: &Scenario) -> Result<Vec<CertificateTab
     let certificate = |motions: &Vec<Motion<'_, S>>| {
         let agents = checker_input::agents(&fleet, motions, &ids);
         let table = if has_outlines {
-            of_bodies(outlines::bodies(agents, motions), motions).map(CertificateTable::from)
+            of_bodies(outlines::bodies(&fleet, agents, motions), motions).map(CertificateTable::from)
         } else {
             of_discs(agents, motions).map(CertificateTable::from)
         };

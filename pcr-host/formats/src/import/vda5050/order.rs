@@ -17,7 +17,7 @@ use std::f64::consts::PI;
 /// How an order is travelled up to some node.
 #[derive(Default)]
 struct OrderPathBuilder {
-    /// In one gear, and in the gears of the edges.
+    /// Along its heading, and as it faces on the edges.
     tracers: [LimitedPathBuilder; 2],
     /// Headings of each edge at both ends; none where it has no length.
     headings: Vec<Option<[f64; 2]>>,
@@ -225,7 +225,7 @@ impl Vda5050Reader<'_> {
 impl OrderPathBuilder {
     /// The vehicle faces so on the next edge.
     fn faces(&mut self, next: Facing) {
-        self.tracers[1].set_reverse(next == Facing::Backward);
+        self.tracers[1].set_facing(next.angle().unwrap_or(0.0));
         self.facings.push(next);
     }
 

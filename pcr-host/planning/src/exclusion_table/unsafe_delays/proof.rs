@@ -146,7 +146,7 @@ impl UnsafeDelayModel {
     ) -> Result<DelayProof, ImportError> {
         let motions = self.fleet.motions();
         let ids: Vec<u64> = (0..motions.len() as u64).collect();
-        let raw = outlines::bodies(checker_input::agents(&self.fleet, &motions, &ids), &motions);
+        let raw = outlines::bodies(&self.fleet, checker_input::agents(&self.fleet, &motions, &ids), &motions);
         let of = self.bodies.get(..self.ways.len()).unwrap_or_default();
         let way_of = |body: usize| of.partition_point(|bodies| bodies.end <= body);
         let refused =
