@@ -58,7 +58,10 @@ fn unknown_keys_are_refused_with_those_that_are_known() {
         &with("/path/1/length", &json!(1)),
         "agent 7, segment 2, length: unknown key; known are kind, radius, sweep, sweep_deg, gear, facing, facing_deg",
     );
-    refused(&with("/path/0/sweep", &json!(1)), "agent 7, segment 1, sweep: unknown key; known are kind, length, gear");
+    refused(
+        &with("/path/0/sweep", &json!(1)),
+        "agent 7, segment 1, sweep: unknown key; known are kind, length, gear, facing, facing_deg",
+    );
     refused(&with("/start/z", &json!(1)), "agent 7, start.z: unknown key; known are x, y, heading, heading_deg");
     refused(
         &with("/speed", &json!(1)),
