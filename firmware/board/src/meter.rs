@@ -1,9 +1,43 @@
 //! Instruction counts that are exact and repeatable: QEMU with `-icount shift=7`, 128 ns an instruction.
 //!
 //! On ARM the SysTick timer runs on that clock, with two ticks an instruction or more, so that rounding gives the
-//! count; a loop of known length calibrates it. On RISC-V `minstret` is the count.
+//! count; a loop of known length calibrates it. It has 24 bits, some five million instructions, so an interrupt counts how often it has
+//! run out ([`meter_interrupt`](crate::meter_interrupt)): the instructions of that, a dozen each time, belong to the count. On RISC-V
+//! `minstret` is the count.
 
 use core::cell::Cell;
+#[cfg(target_arch = "arm")]
+use portable_atomic::{AtomicU32, Ordering};
+
+/// How often the timer has run out since it was wound.
+#[cfg(target_arch = "arm")]
+static TURNS: AtomicU32 = AtomicU32::new(0);
+
+/// The timer has run out. [`meter_interrupt`](crate::meter_interrupt) calls it; there is no other interrupt, so that nothing is lost.
+#[cfg(target_arch = "arm")]
+#[inline(always)]
+pub fn turn() {
+    TURNS.store(TURNS.load(Ordering::Relaxed).wrapping_add(1), Ordering::Relaxed);
+}
+
+/// The interrupt of the timer, for every program that has a [`Meter`]. It is not in this library, because others use the timer themselves.
+#[cfg(target_arch = "arm")]
+#[macro_export]
+macro_rules! meter_interrupt {
+    () => {
+        #[cortex_m_rt::exception]
+        fn SysTick() {
+            $crate::meter::turn();
+        }
+    };
+}
+
+/// The counter of this target does not run out.
+#[cfg(not(target_arch = "arm"))]
+#[macro_export]
+macro_rules! meter_interrupt {
+    () => {};
+}
 
 #[cfg(target_arch = "arm")]
 mod clock {
@@ -11,12 +45,14 @@ mod clock {
     const RELOAD: *mut u32 = 0xE000_E014 as *mut u32;
     const CURRENT: *mut u32 = 0xE000_E018 as *mut u32;
 
+    use super::{Ordering, TURNS};
+
     pub(super) fn start() {
         // SAFETY: registers of the SysTick timer, which nothing else uses.
         unsafe {
             RELOAD.write_volatile(0x00FF_FFFF);
             CURRENT.write_volatile(0);
-            CONTROL.write_volatile(5);
+            CONTROL.write_volatile(7);
         }
     }
 
@@ -26,24 +62,27 @@ mod clock {
         unsafe { CURRENT.read_volatile() }
     }
 
-    /// Whether it has run out since this was asked last.
-    #[inline(always)]
-    pub(super) fn ran_out() -> bool {
-        // SAFETY: as above. To read it clears it.
-        unsafe { CONTROL.read_volatile() & (1 << 16) != 0 }
-    }
-
-    /// Sets it to its largest count.
+    /// Sets it to its largest count: work of less than 2^24 ticks is not interrupted.
     #[inline(always)]
     pub(super) fn wind() {
         // SAFETY: as above. Whatever is written makes it 0, and the next tick the largest.
         unsafe { CURRENT.write_volatile(0) }
+        TURNS.store(0, Ordering::Relaxed);
     }
 
-    /// It counts down, in 24 bits.
-    #[inline(always)]
-    pub(super) fn between(from: u32, to: u32) -> u32 {
-        from.wrapping_sub(to) & 0x00FF_FFFF
+    /// Ticks from one time to another since it was wound. It counts down, in 24 bits.
+    // Not inlined: what is measured is compiled as if this were not there.
+    #[inline(never)]
+    pub(super) fn between(from: u32, to: u32) -> u64 {
+        loop {
+            let seen = TURNS.load(Ordering::Relaxed);
+            let after = now();
+            if TURNS.load(Ordering::Relaxed) == seen {
+                // It may have run out once more after the work.
+                let whole = seen.wrapping_sub(u32::from(after > to));
+                return (u64::from(whole) << 24).wrapping_add(from.into()).wrapping_sub(to.into());
+            }
+        }
     }
 
     #[inline(always)]
@@ -67,15 +106,11 @@ mod clock {
         count
     }
 
-    pub(super) fn ran_out() -> bool {
-        false
-    }
-
     pub(super) fn wind() {}
 
     #[inline(always)]
-    pub(super) fn between(from: u32, to: u32) -> u32 {
-        to.wrapping_sub(from)
+    pub(super) fn between(from: u32, to: u32) -> u64 {
+        to.wrapping_sub(from).into()
     }
 
     #[inline(always)]
@@ -103,24 +138,24 @@ impl Meter {
     /// Starts the clock and calibrates it.
     pub fn new() -> Self {
         clock::start();
+        clock::wind();
         let (a, b) = (clock::now(), clock::now());
-        let nothing = clock::between(a, b);
+        let nothing = clock::between(a, b) as u32;
+        clock::wind();
         let a = clock::now();
         clock::spin(KNOWN / 2);
         let b = clock::now();
-        Self { known: u64::from(clock::between(a, b).wrapping_sub(nothing)), nothing }
+        Self { known: clock::between(a, b).saturating_sub(nothing.into()), nothing }
     }
 
-    /// Instructions of `work`; `u32::MAX` for more than the clock can count, about five million on ARM.
+    /// Instructions of `work`.
     #[inline(always)]
     pub fn count<R>(&self, work: impl FnOnce() -> R) -> (u32, R) {
         clock::wind();
-        let _ = clock::ran_out();
         let from = clock::now();
         let result = work();
         let to = clock::now();
-        let count = self.instructions(u64::from(clock::between(from, to).saturating_sub(self.nothing)));
-        (if clock::ran_out() { u32::MAX } else { count }, result)
+        (self.instructions(clock::between(from, to).saturating_sub(self.nothing.into())), result)
     }
 
     fn instructions(&self, ticks: u64) -> u32 {
@@ -131,41 +166,35 @@ impl Meter {
     /// Begins to count work in parts.
     pub fn laps(&self) -> Laps<'_> {
         clock::wind();
-        let _ = clock::ran_out();
         let from = Cell::new(clock::now());
-        Laps { meter: self, from, ticks: Cell::new(0), longest: Cell::new(0), lost: Cell::new(false) }
+        Laps { meter: self, from, ticks: Cell::new(0), longest: Cell::new(0) }
     }
 }
 
-/// Instructions of work that tells when a part of it is done; only a part must not be longer than the clock can count.
+/// Instructions of work that tells when a part of it is done.
 #[derive(Debug)]
 pub struct Laps<'a> {
     meter: &'a Meter,
     from: Cell<u32>,
     ticks: Cell<u64>,
-    longest: Cell<u32>,
-    lost: Cell<bool>,
+    longest: Cell<u64>,
 }
 
 impl Laps<'_> {
     /// A part is done.
     #[inline(always)]
     pub fn lap(&self) {
-        let ticks = clock::between(self.from.get(), clock::now());
-        self.lost.set(self.lost.get() || clock::ran_out());
-        self.ticks.set(self.ticks.get().wrapping_add(u64::from(ticks)));
+        let to = clock::now();
+        let ticks = clock::between(self.from.get(), to);
+        self.ticks.set(self.ticks.get().wrapping_add(ticks));
         self.longest.set(self.longest.get().max(ticks));
         clock::wind();
-        let _ = clock::ran_out();
         self.from.set(clock::now());
     }
 
-    /// Instructions of all parts, and of the longest; `u32::MAX` where a part was too long to count.
+    /// Instructions of all parts, and of the longest.
     pub fn counts(&self) -> [u32; 2] {
-        if self.lost.get() {
-            return [u32::MAX; 2];
-        }
-        [self.ticks.get(), u64::from(self.longest.get())].map(|ticks| self.meter.instructions(ticks))
+        [self.ticks.get(), self.longest.get()].map(|ticks| self.meter.instructions(ticks))
     }
 }
 

@@ -24,6 +24,8 @@ const AGENT: usize = 2;
 /// Unordered pairs of the agents.
 const PAIRS: u32 = (scenario::AGENTS * (scenario::AGENTS - 1) / 2) as u32;
 
+pcr_board::meter_interrupt!();
+
 #[entry]
 fn main() -> ! {
     process::exit(if run().is_some() { 0 } else { 1 })

@@ -23,6 +23,8 @@ static FLEET: ConstStaticCell<Fleet> = ConstStaticCell::new(Fleet::new());
 static TABLE: ConstStaticCell<Table> =
     ConstStaticCell::new(Ecm::new([EcmEntry::EMPTY; REGIONS], [Piece::EMPTY; 2 * PIECES]));
 
+pcr_board::meter_interrupt!();
+
 #[entry]
 fn main() -> ! {
     process::exit(if run().is_some() { 0 } else { 1 })
@@ -31,14 +33,10 @@ fn main() -> ! {
 fn run() -> Option<()> {
     let (outlines, fleet, table) = (OUTLINES.try_take()?, FLEET.try_take()?, TABLE.try_take()?);
     construct(STORE.try_take()?, outlines, fleet).ok()?;
-    let (meter, mut count) = (Meter::new(), 0_u32);
-    // One agent after the other: the meter would run over.
-    for agent in 0..fleet.len() {
-        let motions = fleet.get(..=agent)?;
-        let (own, inserted) = meter.count(|| insert(table, black_box(motions), agent));
-        inserted?;
-        count = count.saturating_add(own);
-    }
+    let motions = &*fleet;
+    let (count, filled) = Meter::new()
+        .count(|| (0..motions.len()).try_for_each(|agent| insert(table, black_box(motions.get(..=agent)?), agent)));
+    filled?;
     table.regions(fleet).ok()?.for_each(|region| out::print(dump::region(&region).as_bytes()));
     let line = Line::default().integer(table.len() as u32, 0).text(b" regions, ").integer(table.pieces() as u32, 0);
     out::print(line.text(b" pieces\n").as_bytes());

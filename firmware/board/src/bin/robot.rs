@@ -23,6 +23,8 @@ static CLIENT: StaticCell<Client> = StaticCell::new();
 static TOLD: ConstStaticCell<Told> = ConstStaticCell::new(Told::new());
 static KEEPER: ConstStaticCell<Keeper> = ConstStaticCell::new(Keeper::new());
 
+pcr_board::meter_interrupt!();
+
 #[entry]
 fn main() -> ! {
     let client = CLIENT.try_init_with(|| Client::robot(OWN));

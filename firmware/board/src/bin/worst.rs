@@ -32,6 +32,8 @@ static STORE: ConstStaticCell<Storage> = ConstStaticCell::new(Storage::new());
 static TABLE: ConstStaticCell<Table> =
     ConstStaticCell::new(Ecm::new([EcmEntry::EMPTY; scenario::REGIONS], [Piece::EMPTY; PIECES]));
 
+pcr_board::meter_interrupt!();
+
 #[entry]
 fn main() -> ! {
     process::exit(if run().is_some() { 0 } else { 1 })
