@@ -31,7 +31,7 @@ use heapless::Vec;
 /// storage.start_at(north)?.line(4.0)?.rest_to_rest(limits)?.disc(0.25, 0.0)?.add()?;
 ///
 /// let mut fleet = FleetMotions::new();
-/// fleet.fill(&storage)?;
+/// fleet.fill(&storage);
 /// let ecm = Ecm::build([EcmEntry::EMPTY; 4], [Piece::EMPTY; 4], &fleet)?;
 /// assert_eq!(ecm.len(), 1);
 /// # Ok::<(), Box<dyn core::error::Error>>(())
@@ -148,10 +148,10 @@ impl<'o, S: Scalar, const A: usize, const N: usize, const F: usize> FleetStorage
     /// Returns the motion of an agent.
     ///
     /// # Errors
-    /// [`FleetStorageError::NoSuchAgent`]. A motion itself cannot be refused, because it was accepted when its agent was added.
+    /// [`FleetStorageError::NoSuchAgent`].
     pub fn motion(&self, agent: usize) -> Result<Motion<'_, S>, FleetStorageError> {
         let stored = self.agents.get(agent).ok_or(FleetStorageError::NoSuchAgent(agent))?;
-        Ok(stored.motion(&self.segments)?)
+        Ok(stored.motion(&self.segments))
     }
 
     /// Delays the start of an agent by `delay` \[s\], which may be negative, and returns the interval of its new motion \[s\].
@@ -212,10 +212,14 @@ impl<'o, S: Scalar, const A: usize, const N: usize, const F: usize> FleetStorage
 }
 
 impl<S: Scalar, const F: usize> StoredAgent<'_, S, F> {
-    fn motion<'a>(&'a self, segments: &'a [Segment<S>]) -> Result<Motion<'a, S>, InvalidInput> {
+    fn path<'a>(&self, segments: &'a [Segment<S>]) -> PathRef<'a, S> {
         let [begin, count] = [self.begin, self.segments].map(usize::from);
-        let own = segments.get(begin..begin.saturating_add(count)).unwrap_or_default();
-        Motion::of(PathRef::of(own), ProfileRef::of(&self.phases), self.outline, self.start)
+        PathRef::of(segments.get(begin..begin.saturating_add(count)).unwrap_or_default())
+    }
+
+    /// The motion, which was accepted when the agent was completed.
+    fn motion<'a>(&'a self, segments: &'a [Segment<S>]) -> Motion<'a, S> {
+        Motion::accepted(self.path(segments), ProfileRef::of(&self.phases), self.outline, self.start)
     }
 }
 
@@ -355,11 +359,10 @@ impl<'f, 'o, S: Scalar, const A: usize, const N: usize, const F: usize> NewAgent
     fn staged(self, outline: OutlineRef<'o, S>, start: S) -> Result<StagedAgent<'f, 'o, S, A, N, F>, InvalidInput> {
         // There are at most 65535 segments.
         let end = self.storage.segments.len() as u16;
-        let next = self.storage.next()?;
-        (next.segments, next.outline, next.start) = (end.wrapping_sub(next.begin), outline, start);
-        let staged = StagedAgent { storage: self.storage };
-        staged.motion()?;
-        Ok(staged)
+        let mut agent = self.storage.next.take().ok_or(InvalidInput::Disconnected("path"))?;
+        (agent.segments, agent.outline, agent.start) = (end.wrapping_sub(agent.begin), outline, start);
+        Motion::of(agent.path(&self.storage.segments), ProfileRef::of(&agent.phases), outline, start)?;
+        Ok(StagedAgent { storage: self.storage, agent })
     }
 }
 
@@ -389,6 +392,7 @@ impl<S: Scalar, const A: usize, const N: usize, const F: usize> SegmentChain<S> 
 #[must_use = "an agent belongs to the fleet once it is added"]
 pub struct StagedAgent<'f, 'o, S: Scalar, const A: usize, const N: usize, const F: usize> {
     storage: &'f mut FleetStorage<'o, S, A, N, F>,
+    agent: StoredAgent<'o, S, F>,
 }
 
 impl<'o, S: Scalar, const A: usize, const N: usize, const F: usize> StagedAgent<'_, 'o, S, A, N, F> {
@@ -398,12 +402,8 @@ impl<'o, S: Scalar, const A: usize, const N: usize, const F: usize> StagedAgent<
     }
 
     /// Returns the motion of the agent, to try it before it is added.
-    ///
-    /// # Errors
-    /// None: it was accepted when the agent was completed.
-    pub fn motion(&self) -> Result<Motion<'_, S>, InvalidInput> {
-        let next = self.storage.next.as_ref().ok_or(InvalidInput::Disconnected("path"))?;
-        next.motion(&self.storage.segments)
+    pub fn motion(&self) -> Motion<'_, S> {
+        self.agent.motion(&self.storage.segments)
     }
 
     /// Adds the agent to the fleet, behind all others, and returns its index.
@@ -412,8 +412,7 @@ impl<'o, S: Scalar, const A: usize, const N: usize, const F: usize> StagedAgent<
     /// [`InvalidInput::Full`] if there are `A` agents already.
     pub fn add(self) -> Result<usize, InvalidInput> {
         let index = self.storage.agents.len();
-        let next = self.storage.next.take().ok_or(InvalidInput::Disconnected("path"))?;
-        self.storage.agents.push(next).map_err(|_| InvalidInput::Full("agent"))?;
+        self.storage.agents.push(self.agent).map_err(|_| InvalidInput::Full("agent"))?;
         Ok(index)
     }
 
@@ -424,7 +423,7 @@ impl<'o, S: Scalar, const A: usize, const N: usize, const F: usize> StagedAgent<
     pub fn replace(self, agent: usize) -> Result<(), FleetStorageError> {
         let stored = self.storage.agents.get_mut(agent).ok_or(FleetStorageError::NoSuchAgent(agent))?;
         let (begin, segments) = (stored.begin, stored.segments);
-        *stored = self.storage.next.take().ok_or(InvalidInput::Disconnected("path"))?;
+        *stored = self.agent;
         self.storage.close(begin, segments);
         Ok(())
     }
@@ -445,18 +444,12 @@ impl<'a, S: Scalar, const A: usize> FleetMotions<'a, S, A> {
     }
 
     /// Puts the motions of all agents of the storage into the list, in the place of those that were in it.
-    ///
-    /// # Errors
-    /// None: motions were accepted when their agents were added, and there is room for all of them.
-    pub fn fill<const N: usize, const F: usize>(
-        &mut self,
-        storage: &'a FleetStorage<'_, S, A, N, F>,
-    ) -> Result<(), InvalidInput> {
+    pub fn fill<const N: usize, const F: usize>(&mut self, storage: &'a FleetStorage<'_, S, A, N, F>) {
         self.motions.clear();
         for agent in &storage.agents {
-            self.motions.push(agent.motion(&storage.segments)?).map_err(|_| InvalidInput::Full("agent"))?;
+            // There is room: storage and list have the same capacity, `A`.
+            let _ = self.motions.push(agent.motion(&storage.segments));
         }
-        Ok(())
     }
 }
 

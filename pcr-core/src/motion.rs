@@ -101,16 +101,23 @@ impl<'a, S: Scalar> Motion<'a, S> {
         outline: OutlineRef<'a, S>,
         start: S,
     ) -> Result<Self, InvalidInput> {
+        check_times(profile, start)?;
+        let motion = Self::accepted(path, profile, outline, start);
+        motion.check()?;
+        Ok(motion)
+    }
+
+    /// The motion of what [`Motion::of`] has accepted before.
+    pub(crate) fn accepted(
+        path: PathRef<'a, S>,
+        profile: ProfileRef<'a, S>,
+        outline: OutlineRef<'a, S>,
+        start: S,
+    ) -> Self {
         let (radius, corners, spread) = (outline.radius(), outline.corners(), outline.spread());
-        let time = travel_time(profile, start)?;
+        let time = travel_time(profile, start);
         let bounds = path.bounds();
         let extent = bounds.extent().max(path.length()) + radius.double();
-        let gap = gap(path, profile);
-        let share = (LENGTH_TOLERANCE_LOG2..0).fold(path.length(), |length, _| length.half());
-        if gap > S::slack(extent).max(share) {
-            let [path, profile] = [path.length(), profile.length()].map(S::millimetres);
-            return Err(InvalidInput::LengthMismatch { path, profile });
-        }
         // `fold`, because `Iterator::count` contains an overflow check, which can panic.
         let (arcs, diameter) =
             path.segments().iter().fold((0_usize, S::ZERO), |(arcs, most), segment| match segment.curve().lever() {
@@ -122,7 +129,7 @@ impl<'a, S: Scalar> Motion<'a, S> {
             !corners.is_empty() || path.segments().iter().any(|segment| matches!(segment.curve(), Curve::Pivot { .. }));
         let drift = S::drift(arcs, extent + diameter);
         let top_speed = profile.top_speed();
-        let allowance = S::lag(top_speed, profile.duration()) + gap;
+        let allowance = S::lag(top_speed, profile.duration()) + gap(path, profile);
         let (margin, lateness, lever) = (S::ZERO, S::ZERO, S::ZERO);
         let digest = path.digest();
         let disc = Self {
@@ -145,39 +152,60 @@ impl<'a, S: Scalar> Motion<'a, S> {
             top_speed,
             digest,
         };
-        if disc.has_outline() { disc.extended(diameter) } else { Ok(disc) }
+        if disc.has_outline() { disc.extended(diameter) } else { disc }
+    }
+
+    /// Whether it may be used: its lengths agree, and rounding leaves it what its outline needs.
+    fn check(&self) -> Result<(), InvalidInput> {
+        let Self { path, profile, .. } = *self;
+        let extent = self.bounds.extent().max(path.length()) + self.radius.double();
+        let share = (LENGTH_TOLERANCE_LOG2..0).fold(path.length(), |length, _| length.half());
+        if gap(path, profile) > S::slack(extent).max(share) {
+            let [path, profile] = [path.length(), profile.length()].map(S::millimetres);
+            return Err(InvalidInput::LengthMismatch { path, profile });
+        }
+        if self.has_outline() { self.check_outline() } else { Ok(()) }
     }
 
     /// Completes the motion of an outline, or of a disc that turns in place: what rounding does to its corners, and its checksum.
     // Not inlined: other discs do not need it.
     #[inline(never)]
-    fn extended(self, diameter: S) -> Result<Self, InvalidInput> {
+    fn extended(self, diameter: S) -> Self {
         // Corners are placed by their vectors from the centre of an arc. The length of a turn is that at its lever.
-        let extent = in_range(self.extent + self.spread.double() + diameter, "extent of the motion")?;
-        let levers = self.path.segments().iter().filter_map(|segment| segment.curve().lever());
+        let extent = self.extent + self.spread.double() + diameter;
+        let segments = self.path.segments();
+        let levers = segments.iter().filter_map(|segment| segment.curve().lever());
         let lever = levers.map(|lever| self.spread.quotient(lever)).fold(S::ZERO, S::max);
         let levered = |length: S| length + length.times(lever).narrow();
         let drift = levered(self.drift) + S::slack(extent).times(lever).narrow();
         let allowance = levered(self.allowance);
-        let rounding = S::slack(extent) + drift + allowance;
         let has_corners = !self.corners.is_empty();
-        if has_corners && rounding.double().double().double().double() > self.spread + self.radius {
-            return Err(InvalidInput::Lever);
-        }
-        // A turn that moves no corner by more than rounding does is none.
-        let fine = S::slack(extent).half().half();
-        let segments = self.path.segments();
-        let next = segments.iter().skip(1).map(Some).chain([None]);
-        if has_corners && segments.iter().zip(next).any(|(own, next)| own.jumps_before(next, self.spread, fine)) {
-            return Err(InvalidInput::TurnInPlace);
-        }
         let corners = self.corners.iter().flat_map(|corner| [corner.at.x, corner.at.y]);
         let bodies = segments.iter().map(Segment::body).filter(|_| has_corners).flat_map(|body| {
             let ahead = body.vector(self.spread, S::ZERO);
             [ahead.x, ahead.y]
         });
         let digest = corners.chain(bodies).fold(self.digest, |sum, coordinate| digest(sum, coordinate.digest()));
-        Ok(Self { extent, lever, drift, allowance, digest, ..self })
+        Self { extent, lever, drift, allowance, digest, ..self }
+    }
+
+    /// Whether rounding could move a corner too far, and whether the outline would sweep an area where the path turns without a length.
+    #[inline(never)]
+    fn check_outline(&self) -> Result<(), InvalidInput> {
+        in_range(self.extent, "extent of the motion")?;
+        let (has_corners, slack) = (!self.corners.is_empty(), S::slack(self.extent));
+        let rounding = slack + self.drift + self.allowance;
+        if has_corners && rounding.double().double().double().double() > self.spread + self.radius {
+            return Err(InvalidInput::Lever);
+        }
+        // A turn that moves no corner by more than rounding does is none.
+        let fine = slack.half().half();
+        let segments = self.path.segments();
+        let next = segments.iter().skip(1).map(Some).chain([None]);
+        if has_corners && segments.iter().zip(next).any(|(own, next)| own.jumps_before(next, self.spread, fine)) {
+            return Err(InvalidInput::TurnInPlace);
+        }
+        Ok(())
     }
 
     /// Returns the motion with a margin \[m\] around the disc, for localization errors, latency or comfort. Margins do not
@@ -262,7 +290,9 @@ impl<'a, S: Scalar> Motion<'a, S> {
     /// [`InvalidInput::NonFinite`], [`InvalidInput::OutOfRange`].
     pub fn delayed(self, delay: S) -> Result<Self, InvalidInput> {
         in_range(delay, "delay")?;
-        Ok(Self { time: travel_time(self.profile, self.time.lo + delay)?, ..self })
+        let start = self.time.lo + delay;
+        check_times(self.profile, start)?;
+        Ok(Self { time: travel_time(self.profile, start), ..self })
     }
 
     /// The interval from the first start to the last arrival of a fleet \[s\]; outside of it nothing moves. From 0 to 0
@@ -464,9 +494,13 @@ fn gap<S: Scalar>(path: PathRef<'_, S>, profile: ProfileRef<'_, S>) -> S {
     (profile.length() - path.length()).abs()
 }
 
-/// The interval from the start to the arrival; the arrival is rounded up.
-fn travel_time<S: Scalar>(profile: ProfileRef<'_, S>, start: S) -> Result<Interval<S>, InvalidInput> {
+/// Whether the times of a motion that sets off at `start` are in range.
+fn check_times<S: Scalar>(profile: ProfileRef<'_, S>, start: S) -> Result<(), InvalidInput> {
     in_range(start, "start time")?;
-    in_range(start + profile.duration(), "end time")?;
-    Ok(Interval::new(start, start.sum_up(profile.duration())))
+    in_range(start + profile.duration(), "end time").map(drop)
+}
+
+/// The interval from the start to the arrival; the arrival is rounded up.
+fn travel_time<S: Scalar>(profile: ProfileRef<'_, S>, start: S) -> Interval<S> {
+    Interval::new(start, start.sum_up(profile.duration()))
 }

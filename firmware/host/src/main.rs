@@ -90,16 +90,16 @@ fn store<S: Number>(agents: BuiltIn<S>) -> Result<Store<S>, Box<dyn Error>> {
     Ok(store)
 }
 
-fn motions<S: Number>(store: &Store<S>) -> Result<FleetMotions<'_, S, AGENTS>, Box<dyn Error>> {
+fn motions<S: Number>(store: &Store<S>) -> FleetMotions<'_, S, AGENTS> {
     let mut fleet = FleetMotions::new();
-    fleet.fill(store)?;
-    Ok(fleet)
+    fleet.fill(store);
+    fleet
 }
 
 /// Prints what the program `rectangles` prints, but for its figures.
 fn rectangles<S: Number>(agents: BuiltIn<S>) -> Result<(), Box<dyn Error>> {
     let store = store(agents)?;
-    let discs = motions(&store)?;
+    let discs = motions(&store);
     let outline = |disc: &Motion<'_, S>| {
         let (length, width) = (disc.radius(), disc.radius().half());
         Outline::<S, 4>::rectangle(length, length, width, width, S::ZERO)
@@ -122,7 +122,7 @@ fn rectangles<S: Number>(agents: BuiltIn<S>) -> Result<(), Box<dyn Error>> {
 /// Prints what the demo prints.
 fn table<S: Number>(agents: BuiltIn<S>) -> Result<(), Box<dyn Error>> {
     let store = store(agents)?;
-    let fleet = motions(&store)?;
+    let fleet = motions(&store);
     let ecm = Ecm::build([EcmEntry::EMPTY; REGIONS], [Piece::EMPTY; PIECES], &fleet)?;
     let mut out = io::stdout().lock();
     out.write_all(dump::HEADING)?;

@@ -127,7 +127,7 @@ impl<S: Rounded> Here<S> {
             return Err(format!("{last:?}").into());
         }
         clear.map_err(|unclear| format!("{unclear:?}"))?;
-        let fleet = motions(&told)?;
+        let fleet = motions(&told);
         robot.brief(&told, &fleet, zero).map_err(|unclear| format!("{unclear:?}"))?;
         drop(fleet);
         let others = (0..OWN).map(Client::robot).collect();
@@ -157,7 +157,7 @@ impl<S: Rounded> Here<S> {
         let report = Request::Report { agent: OWN, edition, at: pcr_core::Interval::new(said, said) };
         let (told, robot) = (&self.told, &mut self.robot);
         ask(supervisor, &mut self.client, &report, |answer| robot.hear(told, answer))?;
-        let fleet = motions(&self.told)?;
+        let fleet = motions(&self.told);
         self.at = self.robot.hold(&fleet);
         Ok(said)
     }

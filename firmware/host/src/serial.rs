@@ -294,7 +294,7 @@ fn exchange<S: Number>(link: &mut Link, agents: BuiltIn<S>) -> Result<(), Box<dy
 /// The table of the fleet that was sent is that of the same fleet here, bit by bit.
 fn table<S: Number>(link: &mut Link, agents: BuiltIn<S>) -> Result<(), Box<dyn Error>> {
     let store = store(agents)?;
-    let fleet = motions(&store)?;
+    let fleet = motions(&store);
     let ecm = Ecm::build([EcmEntry::EMPTY; REGIONS], [Piece::EMPTY; PIECES], &fleet)?;
     let computed = Answer::Computed { regions: u16::try_from(ecm.len())?, pieces: u16::try_from(ecm.pieces())? };
     link.expect(&Request::<S>::Compute, &computed)?;
@@ -344,7 +344,7 @@ fn conflicts<S: Number>(link: &mut Link, fleet: &[Motion<'_, S>]) -> Result<u16,
 /// Agents are planned again one after the other, on both sides alike; afterwards no two agents overlap, though they may touch.
 fn replan<S: Number>(link: &mut Link, agents: BuiltIn<S>) -> Result<(), Box<dyn Error>> {
     let store = store(agents)?;
-    let mut fleet = motions(&store)?;
+    let mut fleet = motions(&store);
     let ecm = Ecm::build([EcmEntry::EMPTY; REGIONS], [Piece::EMPTY; PIECES], &fleet)?;
     let before = conflicts(link, &fleet)?;
     let mut planned = 0;

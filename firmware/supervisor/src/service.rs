@@ -158,9 +158,8 @@ where
     fn replace(&mut self, index: usize, agent: &Agent<S>) -> Result<Answer<S>, Refusal> {
         let staged = agent.stage(&mut self.fleet).map_err(|invalid| Refusal::agent(index, invalid))?;
         let mut motions = FleetMotions::new();
-        put(staged.storage(), &mut motions)?;
-        let motion = staged.motion().map_err(|invalid| Refusal::agent(index, invalid))?;
-        let replaced = self.table.replace(&mut motions, index, motion);
+        put(staged.storage(), &mut motions);
+        let replaced = self.table.replace(&mut motions, index, staged.motion());
         drop(motions);
         staged.replace(index).map_err(|rejected| Refusal::change(index, rejected))?;
         set(&mut self.limits, index, agent.limits);
@@ -175,7 +174,7 @@ where
     #[inline(never)]
     fn remove(&mut self, index: usize) -> Result<Answer<S>, Refusal> {
         let mut motions = FleetMotions::new();
-        put(&self.fleet, &mut motions)?;
+        put(&self.fleet, &mut motions);
         let erased = self.table.erase(&motions, index);
         drop(motions);
         self.fleet.remove(index).map_err(|rejected| Refusal::change(index, rejected))?;
@@ -196,7 +195,7 @@ where
     #[inline(never)]
     fn compute(&mut self, replies: &mut impl Replies<S>) -> Result<Answer<S>, Refusal> {
         let mut motions = FleetMotions::new();
-        put(&self.fleet, &mut motions)?;
+        put(&self.fleet, &mut motions);
         if self.table.regions().regions(&motions).is_err() {
             build(&mut self.table, &motions, replies)
                 .map_err(|error| needed(&mut self.table, &motions, error, replies))?;
@@ -208,7 +207,7 @@ where
     #[inline(never)]
     fn order(&mut self, terms: Terms<S>) -> Result<Answer<S>, Refusal> {
         let mut motions = FleetMotions::new();
-        put(&self.fleet, &mut motions)?;
+        put(&self.fleet, &mut motions);
         self.table.order(&motions, terms).map(Answer::Edition)
     }
 
@@ -221,14 +220,14 @@ where
         send: &mut impl FnMut(Answer<S>),
     ) -> Result<Answer<S>, Refusal> {
         let mut motions = FleetMotions::new();
-        put(&self.fleet, &mut motions)?;
+        put(&self.fleet, &mut motions);
         self.table.report(&motions, agent, edition, at, send)
     }
 
     #[inline(never)]
     fn orders(&self, agent: usize, send: &mut impl FnMut(Answer<S>)) -> Result<Answer<S>, Refusal> {
         let mut motions = FleetMotions::new();
-        put(&self.fleet, &mut motions)?;
+        put(&self.fleet, &mut motions);
         let with = |agent: usize| {
             let (motion, limits) = motions.get(agent).zip(self.limits.get(agent)).ok_or(no_such_agent(agent))?;
             Agent::of(motion, *limits).map_err(|invalid| Refusal::agent(agent, invalid))
@@ -258,7 +257,7 @@ where
     #[inline(never)]
     fn end_of(&self, index: usize) -> Result<(S, S, Point<S>), Refusal> {
         let mut motions = FleetMotions::new();
-        put(&self.fleet, &mut motions)?;
+        put(&self.fleet, &mut motions);
         self.table.arrived(&motions, index)?;
         let before = motions.get(index).ok_or(no_such_agent(index))?;
         Ok((before.radius(), before.time().lo, before.path().point_at(before.path().length())))
@@ -269,7 +268,8 @@ where
         if agent >= self.fleet.len() {
             return Err(no_such_agent(agent));
         }
-        put(&self.fleet, motions)
+        put(&self.fleet, motions);
+        Ok(())
     }
 
     /// The interval of the agent's new motion.
@@ -306,7 +306,7 @@ where
     #[inline(never)]
     fn conflicts(&self, replies: &mut impl Replies<S>) -> Result<Answer<S>, Refusal> {
         let mut motions = FleetMotions::new();
-        put(&self.fleet, &mut motions)?;
+        put(&self.fleet, &mut motions);
         let mut count = 0_u16;
         for first in 0..motions.len() {
             for second in first.saturating_add(1)..motions.len() {
@@ -336,8 +336,8 @@ fn set<S>(limits: &mut [Limits<S>], agent: usize, to: Limits<S>) {
 fn put<'a, S: Number, const A: usize, const N: usize>(
     fleet: &'a FleetStorage<'_, S, A, N>,
     motions: &mut FleetMotions<'a, S, A>,
-) -> Result<(), Refusal> {
-    motions.fill(fleet).map_err(|invalid| Refusal::agent(fleet.len(), invalid))
+) {
+    motions.fill(fleet);
 }
 
 /// Tries the new path of a robot in the table.
@@ -348,9 +348,8 @@ fn exchange<S: Number, const A: usize, const N: usize, const R: usize, const P: 
     staged: &StagedAgent<'_, '_, S, A, N, 3>,
 ) -> Result<Edition, Refusal> {
     let mut motions = FleetMotions::new();
-    put(staged.storage(), &mut motions)?;
-    let motion = staged.motion().map_err(|invalid| Refusal::agent(index, invalid))?;
-    table.admit(&mut motions, index, motion)
+    put(staged.storage(), &mut motions);
+    table.admit(&mut motions, index, staged.motion())
 }
 
 /// Computes the table of a fleet, one agent at a time. If there is no room, it is empty afterwards.

@@ -95,7 +95,8 @@ fn drive(seed: u32, packed: bool) -> usize {
         .iter()
         .map(|briefing| {
             let mut fleet = FleetMotions::new();
-            fleet.fill(briefing.paths()).map(|()| fleet).expect("motions")
+            fleet.fill(briefing.paths());
+            fleet
         })
         .collect();
     let mut robots: [Robot<f32, ROBOTS, 16, 16>; ROBOTS] = core::array::from_fn(|_| Robot::new());

@@ -14,7 +14,7 @@ fn printed<S: Number>(agents: BuiltIn<S>) -> String {
     let mut store = FleetStorage::<S, AGENTS, SEGMENTS>::new();
     agents.iter().for_each(|agent| assert!(agent.add_to(&mut store).is_ok()));
     let mut fleet = FleetMotions::new();
-    fleet.fill(&store).unwrap();
+    fleet.fill(&store);
     let ecm = Ecm::build([EcmEntry::EMPTY; REGIONS], [Piece::EMPTY; PIECES], &fleet).unwrap();
     let mut bytes = Vec::new();
     dump::table(&fleet, &ecm, |line| bytes.extend_from_slice(line)).unwrap();
@@ -117,7 +117,7 @@ fn a_table_of_another_fleet_is_not_printed() {
         agent.add_to(&mut store).unwrap();
     }
     let mut fleet = FleetMotions::new();
-    fleet.fill(&store).unwrap();
+    fleet.fill(&store);
     let ecm = Ecm::build([EcmEntry::EMPTY; REGIONS], [Piece::EMPTY; PIECES], &fleet[..1]).unwrap();
     let said = dump::table(&fleet, &ecm, |line| assert!(!line.starts_with(b"end")));
     assert!(matches!(said, Err(MismatchError::OtherFleet)), "{said:?}");

@@ -76,7 +76,7 @@ fn robots_get_their_orders_and_go_by_them() {
     briefing.begin(1);
     told.iter().for_each(|answer| briefing.take(answer).expect("room"));
     let mut fleet = FleetMotions::new();
-    fleet.fill(briefing.paths()).expect("motions");
+    fleet.fill(briefing.paths());
     let mut robot = Robot::<f32, 3, 4, 8>::new();
     assert_eq!(robot.hold(&fleet), 0.0, "no orders yet");
     assert_eq!(robot.brief(&briefing, &fleet, 0.0), Ok(true));
@@ -127,7 +127,7 @@ fn a_robot_that_was_restarted_on_the_way_does_not_begin_again() {
     }
     let (mut robot, briefing) = fresh(&mut service, 0);
     let mut fleet = FleetMotions::new();
-    fleet.fill(briefing.paths()).expect("motions");
+    fleet.fill(briefing.paths());
     for at in [0.0, 2.5] {
         assert_eq!(robot.brief(&briefing, &fleet, at), Err(Unclear::Begun), "it does not know where it is");
         robot.hear(&briefing, &Answer::Go { agent: 0, edition: FIRST, to: 4.0 });
@@ -151,12 +151,12 @@ fn a_robot_that_was_restarted_on_the_way_does_not_begin_again() {
     report(&mut service, 2, FIRST, 0.0);
     let (mut robot, briefing) = fresh(&mut service, 2);
     let mut fleet = FleetMotions::new();
-    fleet.fill(briefing.paths()).expect("motions");
+    fleet.fill(briefing.paths());
     assert_eq!(robot.brief(&briefing, &fleet, 0.0), Err(Unclear::Begun));
     // Never sent anywhere: it stands at the start.
     let (mut robot, briefing) = fresh(&mut service, 1);
     let mut fleet = FleetMotions::new();
-    fleet.fill(briefing.paths()).expect("motions");
+    fleet.fill(briefing.paths());
     assert_eq!((robot.brief(&briefing, &fleet, 3.0), robot.hold(&fleet)), (Ok(true), 0.0));
 }
 
@@ -217,7 +217,7 @@ fn what_a_robot_was_not_told_of_is_no_order() {
     let brief = |told: &[Answer<f32>]| {
         let briefing = fleet_of(told);
         let mut fleet = FleetMotions::new();
-        fleet.fill(briefing.paths()).expect("motions");
+        fleet.fill(briefing.paths());
         let mut robot = Robot::<f32, 3, 4, 8>::new();
         let briefed = robot.brief(&briefing, &fleet, 0.0).is_ok();
         robot.hear(&briefing, &Answer::Go { agent: 1, edition: FIRST, to: 4.0 });

@@ -30,7 +30,7 @@ fn add(storage: &mut Storage<'_>, y: f64, length: f64) -> Result<usize, InvalidI
 
 fn places<const A: usize>(storage: &FleetStorage<'_, f64, A, 8>) -> Vec<(f64, f64), 3> {
     let mut fleet = FleetMotions::new();
-    fleet.fill(storage).unwrap();
+    fleet.fill(storage);
     fleet.iter().map(|motion| (motion.time().lo, motion.path().length())).collect()
 }
 
@@ -47,7 +47,7 @@ fn agents_are_those_of_paths_with_storage_of_their_own() {
     let path = path.line(1.0).unwrap().arc_by(1.5, -FRAC_PI_2).unwrap().pivot(0.5, FRAC_PI_2).unwrap();
     let profile = Profile::rest_to_rest(path.as_path().length(), LIMITS).unwrap();
     let own = Motion::with_outline(path.as_path(), profile.as_profile(), &truck, 3.0).unwrap();
-    assert!(same(&staged.motion().unwrap(), &own));
+    assert!(same(&staged.motion(), &own));
     assert_eq!(staged.add(), Ok(0));
     assert!(same(&storage.motion(0).unwrap(), &own));
 
@@ -138,11 +138,11 @@ fn motions_may_have_margins_and_are_filled_again() {
     let mut storage = Storage::new();
     add(&mut storage, 0.0, 1.0).unwrap();
     let mut fleet = FleetMotions::new();
-    fleet.fill(&storage).unwrap();
+    fleet.fill(&storage);
     for motion in &mut *fleet {
         *motion = motion.with_margin(0.1).unwrap();
     }
     assert_eq!(fleet[0].margin(), 0.1);
-    fleet.fill(&storage).unwrap();
+    fleet.fill(&storage);
     assert_eq!((fleet.len(), fleet[0].margin()), (1, 0.0));
 }

@@ -28,7 +28,7 @@ fn run() -> Option<()> {
         agent.add_to(store).ok()?;
     }
     let mut fleet = FleetMotions::new();
-    fleet.fill(store).ok()?;
+    fleet.fill(store);
     table.fill(&fleet).ok()?;
     out::print(dump::HEADING);
     table.regions(&fleet).ok()?.for_each(|region| out::print(dump::region(&region).as_bytes()));

@@ -105,7 +105,7 @@ fn compute(buffer: &mut Buffer, edition: usize) -> Option<()> {
         agent.add_to(&mut buffer.storage).ok()?;
     }
     let mut fleet = FleetMotions::new();
-    fleet.fill(&buffer.storage).ok()?;
+    fleet.fill(&buffer.storage);
     buffer.table.begin_fill(&fleet);
     while !buffer.table.fill_pairs(&fleet, 1).ok()? {
         // What else the main program has to do: feed the watchdog, answer the line.
@@ -133,7 +133,7 @@ fn SysTick() {
 #[inline(never)]
 fn control(buffer: &Buffer) -> Option<()> {
     let mut fleet = FleetMotions::new();
-    fleet.fill(&buffer.storage).ok()?;
+    fleet.fill(&buffer.storage);
     for region in buffer.table.row(&fleet, 0).ok()? {
         black_box((region.time(), region.length()));
     }

@@ -45,7 +45,7 @@ fn run() -> Option<()> {
         constructors = constructors.saturating_add(count);
     }
     let mut fleet = FleetMotions::new();
-    fleet.fill(store).ok()?;
+    fleet.fill(store);
     let (mut build, mut worst) = (0_u32, 0_u32);
     for agent in 0..fleet.len() {
         let motions = fleet.get(..=agent)?;

@@ -37,7 +37,7 @@ fn main() -> ! {
 #[inline(never)]
 fn job<'a>(store: &'a mut Storage, fleet: &mut Fleet<'a>, table: &mut Table, agents: &BuiltIn) -> Option<usize> {
     construct(store, agents).ok()?;
-    fleet.fill(store).ok()?;
+    fleet.fill(store);
     build(table, fleet).ok()?;
     Some(ask(table, fleet))
 }

@@ -227,7 +227,7 @@ fn storage<S: Scalar>() -> Result<(), FleetStorageError> {
     let limits = Limits { speed: number(), acceleration: number() };
     let path = NewAgent::profile(NewAgent::rest_to_rest(path, limits)?, Profile::<S, 3>::standing().as_profile())?;
     let staged = NewAgent::disc(path, number(), number())?;
-    any((StagedAgent::storage(&staged).len(), StagedAgent::motion(&staged).is_ok()));
+    any((StagedAgent::storage(&staged).len(), StagedAgent::motion(&staged).radius()));
     any(StagedAgent::add(staged).is_ok());
     let outline: OutlineRef<'static, S> = OutlineRef::new(any(&[]), number())?;
     let staged = NewAgent::outline(FleetStorage::start_at(&mut storage, any(pose))?, outline, number())?;
@@ -236,7 +236,7 @@ fn storage<S: Scalar>() -> Result<(), FleetStorageError> {
     any(FleetStorage::delay(&mut storage, any(0), number()).is_ok());
     any(FleetStorage::remove(&mut storage, any(0)).is_ok());
     let mut fleet = any(FleetMotions::<'_, S, 2>::new());
-    any(FleetMotions::fill(&mut fleet, &storage).is_ok());
+    FleetMotions::fill(&mut fleet, &storage);
     any((
         <FleetMotions<'_, S, 2> as Deref>::deref(&fleet).len(),
         <FleetMotions<'_, S, 2> as DerefMut>::deref_mut(&mut fleet).len(),

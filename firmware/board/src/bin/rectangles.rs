@@ -51,7 +51,7 @@ fn construct(
     fleet: &mut Fleet,
 ) -> Result<(), InvalidInput> {
     AGENTS.iter().try_for_each(|agent| agent.add_to(store).map(|_| ()))?;
-    fleet.fill(store)?;
+    fleet.fill(store);
     for (motion, outline) in fleet.iter_mut().zip(outlines) {
         let (length, width) = (motion.radius(), motion.radius().half());
         let rectangle = outline.insert(Outline::rectangle(length, length, width, width, Number::ZERO)?);

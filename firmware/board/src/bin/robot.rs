@@ -71,7 +71,10 @@ fn work(link: &mut Link, told: &mut Told, keeper: &mut Keeper) -> Option<()> {
     let last = link.ask(&Request::Orders { agent: OWN }, |answer| clear &= told.take(answer).is_ok())?;
     let Answer::Orders { edition, .. } = last else { return None };
     let mut fleet = FleetMotions::new();
-    fleet.fill(told.paths()).ok().filter(|()| clear)?;
+    if !clear {
+        return None;
+    }
+    fleet.fill(told.paths());
     // It stands at the start. Restarted on the way it would be refused, as it cannot find its place there.
     keeper.brief(told, &fleet, Number::ZERO).ok()?;
     let end = fleet.get(keeper.own())?.path().length();

@@ -6,10 +6,11 @@
 #![no_main]
 
 use core::hint::black_box;
+use pcr_board::courses::{Course, ONE, Random};
 use pcr_board::meter::Meter;
 use pcr_board::{AGENTS, Number, entry, out};
-use pcr_core::scalar::{self, Angle};
-use pcr_core::{Curve, Ecm, EcmEntry, FleetMotions, FleetStorage, Limits, Piece, Point, Pose, Scalar, TurnSide};
+use pcr_core::scalar::Angle;
+use pcr_core::{Curve, Ecm, EcmEntry, FleetMotions, FleetStorage, Limits, Piece, Point, Pose, Scalar};
 use pcr_supervisor::dump::Line;
 use pcr_supervisor::{Agent, Step, scenario};
 use semihosting::process;
@@ -22,7 +23,6 @@ const MANY: [usize; 2] = if cfg!(armv6m) { [5, 10] } else { [10, 24] };
 const SEGMENTS: usize = if cfg!(armv6m) { scenario::SEGMENTS } else { 48 };
 const PIECES: usize = if cfg!(armv6m) { scenario::PIECES } else { 576 };
 const CLIMBS: Option<&str> = option_env!("PCR_WORST_CLIMBS");
-const ONE: Number = <Number as pcr_supervisor::Number>::ONE;
 
 type Storage = FleetStorage<'static, Number, { scenario::AGENTS }, SEGMENTS>;
 type Table = Ecm<Number, [EcmEntry; scenario::REGIONS], [Piece<Number>; PIECES]>;
@@ -41,7 +41,7 @@ fn main() -> ! {
 
 fn run() -> Option<()> {
     let (store, table) = (STORE.try_take()?, TABLE.try_take()?);
-    let mut search = Search { meter: Meter::new(), store, table, random: Random(1), too_large: 0 };
+    let mut search = Search { meter: Meter::new(), store, table, random: Random::new(), too_large: 0 };
     for (size, climbs, changes) in SIZES {
         let climbs = CLIMBS.map_or(Some(climbs), |climbs| climbs.parse().ok())?;
         let mut longest = 0_u32;
@@ -80,7 +80,7 @@ fn twelve(meter: &Meter, store: &mut Storage, table: &mut Table) -> Option<(u32,
     table.clear();
     AGENTS.iter().try_for_each(|agent| agent.add_to(store).map(drop)).ok()?;
     let mut fleet = FleetMotions::new();
-    fleet.fill(store).ok()?;
+    fleet.fill(store);
     let (mut took, mut pairs, mut before) = (0_u32, 0_u32, 0_u32);
     for (agent, built_in) in AGENTS.iter().enumerate() {
         let motions = fleet.get(..=agent)?;
@@ -91,13 +91,6 @@ fn twelve(meter: &Meter, store: &mut Storage, table: &mut Table) -> Option<(u32,
         (took, before) = (took.saturating_add(count), before.saturating_add(segments));
     }
     Some((took, pairs))
-}
-
-/// What a path is made of, each from 0 to 255: its place, its heading, the radius of its disc, and its lines and arcs.
-#[derive(Clone, Copy)]
-struct Course {
-    start: [u8; 5],
-    steps: [[u8; 3]; 8],
 }
 
 struct Search {
@@ -118,7 +111,7 @@ impl Search {
             let mut other = pair;
             for _ in 0..=self.random.below(1) {
                 let course = other.get_mut(self.random.below(1) as usize)?;
-                self.random.change(course, size)?;
+                self.random.change(course, size, false);
             }
             let count = self.count(&other, size)?;
             if count >= most {
@@ -133,7 +126,7 @@ impl Search {
         self.store.clear();
         self.table.clear();
         for course in pair {
-            course.add(self.store, size)?;
+            course.add(self.store, size).ok()?;
         }
         self.insert()
     }
@@ -157,7 +150,7 @@ impl Search {
     /// Instructions of the regions of the two paths in the storage; 0 if the table has no room for them.
     fn insert(&mut self) -> Option<u32> {
         let mut motions = FleetMotions::new();
-        motions.fill(self.store).ok()?;
+        motions.fill(self.store);
         self.table.insert(motions.get(..1)?, 0).ok()?;
         let table = &mut *self.table;
         let (count, inserted) = self.meter.count(|| table.insert(black_box(&motions), 1));
@@ -166,81 +159,5 @@ impl Search {
         }
         self.too_large = self.too_large.saturating_add(1);
         Some(0)
-    }
-}
-
-/// From 0 to 255/256.
-fn part(byte: u8) -> Number {
-    let (mut sum, mut weight) = (Number::ZERO, ONE);
-    for bit in (0..8).rev() {
-        weight = weight.half();
-        if byte & 1 << bit != 0 {
-            sum = sum + weight;
-        }
-    }
-    sum
-}
-
-impl Course {
-    /// An agent on lines and arcs, full circles among them, that begins in a square of two metres: most of them meet others. Places and
-    /// radii are multiples of 1/256 m, so that some touch exactly.
-    fn add(&self, store: &mut Storage, size: usize) -> Option<()> {
-        let least = ONE.half().half().half();
-        let mut path = [Step { curve: Curve::Line, length: least }; 8];
-        let path = path.get_mut(..size)?;
-        for (step, [kind, radius, length]) in path.iter_mut().zip(self.steps) {
-            let radius = least + part(radius);
-            let circle = <Number as Scalar>::Angle::circumference(radius);
-            let arc = |turn, length| Step { curve: Curve::Arc { radius, turn }, length };
-            let some = scalar::Wide::narrow(circle.times(part(length)));
-            *step = match kind % 4 {
-                0 => Step { curve: Curve::Line, length: least + part(length).double() },
-                1 => arc(TurnSide::Left, some),
-                2 => arc(TurnSide::Right, some),
-                _ => arc(TurnSide::Left, circle),
-            };
-        }
-        let [x, y, ahead, aside, radius] = self.start.map(part);
-        let start = Pose {
-            position: Point::new(x.double(), y.double()),
-            heading: <Number as Scalar>::Angle::atan2(ahead - ONE.half(), aside - ONE.half()),
-        };
-        let limits = Limits { speed: ONE, acceleration: ONE };
-        let agent = Agent { radius: least + radius.half(), start_time: Number::ZERO, limits, start, path: &*path };
-        agent.add_to(store).ok().map(drop)
-    }
-}
-
-/// Xorshift (Marsaglia 2003).
-struct Random(u32);
-
-impl Random {
-    fn below(&mut self, bits: u32) -> u32 {
-        self.0 ^= self.0 << 13;
-        self.0 ^= self.0 >> 17;
-        self.0 ^= self.0 << 5;
-        self.0.wrapping_shr(32_u32.wrapping_sub(bits))
-    }
-
-    fn byte(&mut self) -> u8 {
-        self.below(8) as u8
-    }
-
-    fn course(&mut self) -> Course {
-        Course { start: [(); 5].map(|()| self.byte()), steps: [[(); 3]; 8].map(|step| step.map(|()| self.byte())) }
-    }
-
-    /// Changes one number of a path of this size: by one, or to any other.
-    fn change(&mut self, course: &mut Course, size: usize) -> Option<()> {
-        // Of the places of a path, the last ones count double, which does not matter.
-        let all = size.saturating_mul(3).saturating_add(5);
-        let at = (self.below(5) as usize).min(all.saturating_sub(1));
-        let byte = course.start.iter_mut().chain(course.steps.as_flattened_mut()).nth(at)?;
-        *byte = match self.below(2) {
-            0 => byte.wrapping_add(1),
-            1 => byte.wrapping_sub(1),
-            _ => self.byte(),
-        };
-        Some(())
     }
 }

@@ -144,7 +144,7 @@ impl<S: Rounded> Driver<S> {
     fn brief(&mut self, tally: &mut Tally) -> Result<(), Box<dyn Error>> {
         self.asks = false;
         let at = self.reported();
-        let fleet = motions(&self.briefing)?;
+        let fleet = motions(&self.briefing);
         let mut changed = self.robot.brief(&self.briefing, &fleet, at);
         if changed == Err(Unclear::Begun) {
             // It looks around; what it is told is the path that it is on.
@@ -172,7 +172,7 @@ impl<S: Rounded> Driver<S> {
     /// A control: how fast it goes until the next one.
     pub(super) fn control(&mut self, random: &mut Random, reckless: bool) -> Result<(), Box<dyn Error>> {
         if !self.asks {
-            let fleet = motions(&self.briefing)?;
+            let fleet = motions(&self.briefing);
             let hold = self.robot.hold(&fleet).to_f64();
             if hold < self.hold {
                 return Err("a hold went back".into());
@@ -230,8 +230,8 @@ impl<S: Rounded> Driver<S> {
 /// The paths that a robot knows.
 pub(crate) fn motions<S: Number, const A: usize, const N: usize, const R: usize>(
     told: &Briefing<S, A, N, R>,
-) -> Result<FleetMotions<'_, S, A>, Box<dyn Error>> {
+) -> FleetMotions<'_, S, A> {
     let mut fleet = FleetMotions::new();
-    fleet.fill(told.paths()).map_err(|invalid| format!("{invalid:?}"))?;
-    Ok(fleet)
+    fleet.fill(told.paths());
+    fleet
 }
