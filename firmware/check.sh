@@ -5,6 +5,7 @@
 #   check.sh all                 everything
 #   check.sh TARGET:FORMAT...    some
 #   check.sh examples            those for all boards; continuous integration builds that for an STM32F4, which is in docs/guide/languages.md
+#   check.sh climb SECONDS [TARGET:FORMAT...]  searches for worst cases for so long, half of it those of tables and half those of queries
 #   UPDATE=1 check.sh ...        writes the files in expected/ instead of comparing with them; budgets hold all the same
 # Installs what is missing as root on Debian, and says so; elsewhere it says what to install.
 set -euo pipefail
@@ -183,6 +184,9 @@ rectangles() {
   sed -n 's/^\( *[0-9]*  \)table of/\1instructions: table of/p' "$scratch/rectangles"
 }
 
+# Where single calls are measured: their stacks, and what they take at worst.
+measured() { [[ "$1:$2" = thumbv7em-none-eabihf:f32 || "$1:$2" = thumbv6m-none-eabi:q16 ]]; }
+
 # The figures of a build, a line each: number, what.
 figures() {
   local target=$1 format=$2 programs=$out/$1/release
@@ -211,16 +215,15 @@ figures() {
       printf '%9d  bytes of stack of a hold, bound\n' "$(tools/fwcheck.py "$programs/robot" --root robot::hold 2>/dev/null)"
       ;;
   esac
-  case $target:$format in
-    thumbv7em-none-eabihf:f32 | thumbv6m-none-eabi:q16)
-      build "$target" "$format" stacks
-      ./qemu-run.sh "$programs/stacks"
-      ;;
-  esac
+  if measured "$target" "$format"; then
+    build "$target" "$format" stacks queries
+    ./qemu-run.sh "$programs/stacks"
+  fi
   # What the robot has told, while it was run above.
   sed 's/^\( *[0-9]*  \)/\1instructions: /' "$scratch/robot"
   ICOUNT=7 ./qemu-run.sh "$programs/measure" | sed 's/^\( *[0-9]*  \)/\1instructions: /'
   ICOUNT=7 ./qemu-run.sh "$programs/worst"
+  if measured "$target" "$format"; then ICOUNT=7 ./qemu-run.sh "$programs/queries"; fi
   if [ "$target:$format" = thumbv7em-none-eabihf:f32 ]; then rectangles "$target" "$format"; fi
 }
 
@@ -235,16 +238,49 @@ limit() {
   [ "$value" -le "$3" ] || fail "$2: $value, more than the budget of $3"
 }
 
-# Most instructions of two paths for each pair of their segments: docs/maintain/firmware.md, worst case.
+# Most instructions for each pair of segments, and for each unit of a query: docs/maintain/firmware.md, worst case.
 worst_case() {
   case $1:$2 in
-    thumb*:f32) echo 95000 ;;
+    thumb*:f32) echo 95000 1250 ;;
     thumb*:micro) echo 120000 ;;
     thumbv7m*:q16) echo 210000 ;;
-    thumbv6m*:q16) echo 650000 ;;
+    thumbv6m*:q16) echo 650000 16000 ;;
     riscv32imc*:q16) echo 280000 ;;
     *) fail "no worst case for $1, $2" ;;
   esac
+}
+
+# within_worst_case FILE TARGET FORMAT
+within_worst_case() {
+  local file=$1 pair unit paths call
+  read -r pair unit <<<"$(worst_case "$2" "$3")"
+  # With many pieces of one pair, too: their number must not count more than once.
+  local many=(10 24)
+  case $2 in thumbv6m*) many=(5 10) ;; esac
+  for paths in "two paths of "{1,2,4,8}", the longest found" "two paths of ${many[0]} that meet everywhere" \
+    "two paths of ${many[1]} that meet everywhere" "table of all agents"; do
+    limit "$file" "instructions a pair of segments: $paths" "$pair"
+  done
+  if ! measured "$2" "$3"; then return; fi
+  for call in Encounter::contacts first_conflict RegionRef::forbidden_delays earliest_start earliest_departure \
+    PrecedenceTable::{hold,check,admit}; do
+    limit "$file" "instructions a unit of $call, the longest found" "$unit"
+  done
+  limit "$file" "instructions a unit of two that keep their distance" "$unit"
+}
+
+# climb SECONDS TARGET FORMAT
+climb() {
+  local target=$2 format=$3 program
+  step "$target, $format: worst cases, for $1 s"
+  PCR_WORST_ROUNDS=4000000000 build "$target" "$format" worst queries
+  for program in worst queries; do
+    # It has no end.
+    QEMU_TIMEOUT=$(($1 / 2)) ICOUNT=7 ./qemu-run.sh "$out/$target/release/$program" >"$scratch/rounds" || [ $? -eq 124 ] || fail "$program"
+    awk '{ report = report $0 "\n" } /has no room for$/ { last = report; report = ""; rounds++ }
+      END { print "# " rounds " rounds"; printf "%s", last }' "$scratch/rounds"
+  done | tee "$scratch/climb"
+  within_worst_case "$scratch/climb" "$target" "$format"
 }
 
 budgets() {
@@ -280,30 +316,21 @@ budgets() {
       limit "$file" "bytes of code of a robot that keeps orders, the library not included" 8192
       ;;
   esac
-  local paths
-  # With many pieces of one pair, too: their number must not count more than once.
-  local many=(10 24)
-  case $target in thumbv6m*) many=(5 10) ;; esac
-  for paths in "two paths of "{1,2,4,8}", the longest found" "two paths of ${many[0]} that meet everywhere" \
-    "two paths of ${many[1]} that meet everywhere" "table of all agents"; do
-    limit "$file" "instructions a pair of segments: $paths" "$(worst_case "$target" "$format")"
-  done
+  within_worst_case "$file" "$target" "$format"
   # Single calls, where they are measured: tables and movement authority, and searches, which need more.
   local call
-  case $target:$format in
-    thumbv7em-none-eabihf:f32 | thumbv6m-none-eabi:q16)
-      for call in "the constructors" "the motions" Ecm::fill "RegionRef::time and length" RegionRef::slice_at Encounter::closest \
-        PrecedenceTable::hold; do
-        limit "$file" "bytes of stack of $call" "$stack"
-      done
-      for call in first_conflict first_overlap safe_intervals safe_lengths RegionRef::forbidden_delays earliest_start least_duration \
-        PrecedenceTable::check PrecedenceTable::as_planned PrecedenceTable::replace; do
-        limit "$file" "bytes of stack of $call" 3072
-      done
-      limit "$file" "bytes of stack of PrecedenceTable::admit" 3328
-      limit "$file" "bytes of stack of earliest_departure" 4480
-      ;;
-  esac
+  if measured "$target" "$format"; then
+    for call in "the constructors" "the motions" Ecm::fill "RegionRef::time and length" RegionRef::slice_at Encounter::closest \
+      PrecedenceTable::hold; do
+      limit "$file" "bytes of stack of $call" "$stack"
+    done
+    for call in first_conflict first_overlap safe_intervals safe_lengths RegionRef::forbidden_delays earliest_start least_duration \
+      PrecedenceTable::check PrecedenceTable::as_planned PrecedenceTable::replace; do
+      limit "$file" "bytes of stack of $call" 3072
+    done
+    limit "$file" "bytes of stack of PrecedenceTable::admit" 3328
+    limit "$file" "bytes of stack of earliest_departure" 4480
+  fi
   case $target in
     thumb*) limit "$file" "bytes of code of the library in it" "$thumb_budget" ;;
     riscv32imc*) limit "$file" "bytes of code of the library in it" "$riscv_budget" ;;
@@ -390,6 +417,12 @@ BOARDS
 
 if [ "$*" = examples ]; then
   examples
+  exit
+fi
+if [ "${1:-}" = climb ]; then
+  seconds=${2:?how many seconds}
+  shift 2
+  for pair in "${@:-${matrix[@]}}"; do climb "$seconds" "${pair%%:*}" "${pair##*:}"; done
   exit
 fi
 tools

@@ -11,6 +11,11 @@ pub const ONE: Number = <Number as pcr_supervisor::Number>::ONE;
 /// Largest number of segments of a path.
 pub const LONGEST: usize = 8;
 
+/// Rounds of a search: one, unless the build says how many. `None` if that is no number.
+pub fn rounds() -> Option<u32> {
+    option_env!("PCR_WORST_ROUNDS").map_or(Some(1), |rounds| rounds.parse().ok())
+}
+
 /// What an agent is made of, each from 0 to 255.
 #[derive(Clone, Copy, Debug)]
 pub struct Course {

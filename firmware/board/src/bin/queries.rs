@@ -2,12 +2,12 @@
 //! paths, speeds and start times a little, keeps what takes no less, and goes on from there. `check.sh` compares what is found with the
 //! bounds. QEMU must run with `ICOUNT=7`.
 //!
-//! A build with `PCR_WORST_CLIMBS=100` makes a hundred times as many climbs as `check.sh` has time for.
+//! A build with `PCR_WORST_ROUNDS=100` climbs a hundred times as often as `check.sh` has time for, and reports after every round.
 #![no_std]
 #![no_main]
 
 use core::hint::black_box;
-use pcr_board::courses::{Course, ONE, Random};
+use pcr_board::courses::{self, Course, ONE, Random};
 use pcr_board::meter::Meter;
 use pcr_board::{Number, entry, out};
 use pcr_core::scalar::{Angle, Wide};
@@ -21,9 +21,8 @@ use pcr_supervisor::{Agent, Step};
 use semihosting::process;
 use static_cell::ConstStaticCell;
 
-/// Segments of a path; climbs, unless the build says otherwise, and changes in each.
+/// Segments of a path; climbs in a round, and changes in each.
 const SIZES: [(usize, u32, u32); 3] = [(1, 3, 120), (2, 2, 100), (4, 1, 100)];
-const CLIMBS: Option<&str> = option_env!("PCR_WORST_CLIMBS");
 /// Agents of a fleet, and one more path, which one of them gets.
 const FLEET: usize = 3;
 const PATHS: usize = FLEET + 1;
@@ -61,6 +60,15 @@ enum Query {
 }
 
 impl Query {
+    /// Of two paths one is changed, or of all four.
+    const fn bits(self) -> u32 {
+        if self.is_of_all() { 2 } else { 1 }
+    }
+
+    const fn is_of_all(self) -> bool {
+        matches!(self, Self::Hold | Self::Check | Self::Admit)
+    }
+
     const ALL: [(Self, &'static [u8]); 8] = [
         (Self::Contacts, b"Encounter::contacts"),
         (Self::FirstConflict, b"first_conflict"),
@@ -76,21 +84,17 @@ impl Query {
 fn run() -> Option<()> {
     let (store, table) = (STORE.try_take()?, TABLE.try_take()?);
     let mut search = Search { meter: Meter::new(), store, table, random: Random::new(), too_large: 0 };
-    for (query, name) in Query::ALL {
-        let mut most = Cost::NONE;
-        for (size, climbs, changes) in SIZES {
-            let times = CLIMBS.map_or(Some(1), |climbs| climbs.parse().ok())?;
-            for _ in 0..climbs.saturating_mul(times) {
-                most = most.larger(search.climb(query, size, changes)?);
+    let mut longest = Query::ALL.map(|_| Cost::NONE);
+    for _ in 0..courses::rounds()? {
+        for ((query, _), most) in Query::ALL.into_iter().zip(&mut longest) {
+            for (size, climbs, changes) in SIZES {
+                for _ in 0..climbs {
+                    *most = most.larger(search.climb(query, size, changes)?);
+                }
             }
         }
-        let line = Line::default().integer(most.per_unit()?, 9).text(b"  instructions a unit of ").text(name);
-        out::print(line.text(b", the longest found\n").as_bytes());
+        search.report(&longest)?;
     }
-    let line = Line::default().integer(search.hovering()?.per_unit()?, 9);
-    out::print(line.text(b"  instructions a unit of two that keep their distance\n").as_bytes());
-    let line = Line::default().integer(search.too_large, 9);
-    out::print(line.text(b"  fleets in this search that the table has no room for\n").as_bytes());
     Some(())
 }
 
@@ -105,7 +109,8 @@ impl Cost {
     const NONE: Self = Self { count: 0, units: 1 };
 
     fn larger(self, other: Self) -> Self {
-        let [own, their] = [[self.count, other.units], [other.count, self.units]].map(|[a, b]| u64::from(a).wrapping_mul(b.into()));
+        let [own, their] =
+            [[self.count, other.units], [other.count, self.units]].map(|[a, b]| u64::from(a).wrapping_mul(b.into()));
         if their >= own { other } else { self }
     }
 
@@ -124,6 +129,18 @@ struct Search {
 }
 
 impl Search {
+    fn report(&mut self, longest: &[Cost]) -> Option<()> {
+        for ((_, name), most) in Query::ALL.into_iter().zip(longest) {
+            let line = Line::default().integer(most.per_unit()?, 9).text(b"  instructions a unit of ").text(name);
+            out::print(line.text(b", the longest found\n").as_bytes());
+        }
+        let line = Line::default().integer(self.hovering()?.per_unit()?, 9);
+        out::print(line.text(b"  instructions a unit of two that keep their distance\n").as_bytes());
+        let line = Line::default().integer(self.too_large, 9);
+        out::print(line.text(b"  fleets in this search that the table has no room for\n").as_bytes());
+        Some(())
+    }
+
     /// The largest cost on one climb.
     fn climb(&mut self, query: Query, size: usize, changes: u32) -> Option<Cost> {
         let mut paths = [(); PATHS].map(|()| self.random.course());
@@ -131,7 +148,7 @@ impl Search {
         for _ in 0..changes {
             let mut other = paths;
             for _ in 0..=self.random.below(1) {
-                let path = other.get_mut(self.random.below(2) as usize)?;
+                let path = other.get_mut(self.random.below(query.bits()) as usize)?;
                 self.random.change(path, size, true);
             }
             let cost = self.cost(query, &other, size)?;
@@ -152,17 +169,15 @@ impl Search {
         let mut all = FleetMotions::new();
         all.fill(self.store);
         let (fleet, new) = all.split_at_mut_checked(FLEET)?;
-        let used = match query {
-            Query::Hold | Query::Check | Query::Admit => fleet,
-            _ => fleet.get_mut(..2)?,
-        };
+        let used = if query.is_of_all() { fleet } else { fleet.get_mut(..2)? };
         if self.table.fill(used).is_err() {
             self.too_large = self.too_large.saturating_add(1);
             return Some(Cost::NONE);
         }
-        match query {
-            Query::Hold | Query::Check | Query::Admit => orders(&self.meter, self.table, query, used, *new.first()?),
-            _ => self.pair(query, used),
+        if query.is_of_all() {
+            orders(&self.meter, self.table, query, used, *new.first()?)
+        } else {
+            self.pair(query, used)
         }
     }
 
@@ -245,18 +260,23 @@ fn orders<'m>(
             table.decide(fleet, second, first, PassingState::Second, zero).ok()?;
         }
     }
+    // The others are on their way, where the hold is not just the begin of a piece.
     let (agent, mut progress) = (FLEET.saturating_sub(1), [Progress::at_rest(zero); FLEET]);
+    for (place, motion) in progress.iter_mut().zip(&*fleet).take(agent) {
+        *place = Progress::at_rest(Scalar::half(motion.path().length()));
+    }
     // About a millimetre.
     let gain = (0..10).fold(ONE, |gain, _| Scalar::half(gain));
     let (tolerances, mut states) = (CheckTolerances { width: zero, gain }, [CheckState::EMPTY; FLEET]);
     let whole = |table: &Table| {
         let (pieces, regions) = (count(table.ecm().pieces()), count(table.ecm().len()));
-        pieces.saturating_add(1).saturating_mul(regions.saturating_add(1))
+        pieces.saturating_add(1).saturating_mul(regions.saturating_add(1)).saturating_mul(8)
     };
     let (count, units) = match query {
         Query::Hold => {
             let pieces = count(table.ecm().pieces());
-            (meter.count(|| black_box(table.hold(fleet, agent, &progress).is_ok())).0, pieces.saturating_add(1))
+            let hold = || black_box(table.hold(fleet, agent, &progress).is_ok());
+            (meter.count(hold).0, pieces.saturating_add(1).saturating_mul(8))
         }
         Query::Check => {
             let units = whole(table);
@@ -266,13 +286,12 @@ fn orders<'m>(
         _ => {
             let size = |motion: &Motion<'_, Number>| count(motion.path().segments().len());
             let others = fleet.iter().take(agent).map(&size).fold(0_u32, u32::saturating_add);
-            let tables = size(&motion).saturating_mul(others).saturating_mul(60);
+            let tables = size(&motion).saturating_mul(others).saturating_mul(160);
             let proposal = PathProposal { agent, motion, progress: Progress::at_rest(zero) };
             let first = |_: &pcr_core::RegionRef<'_, Number>| PassingState::First;
             let before = whole(table);
-            let (took, admitted) = meter.count(|| {
-                table.admit(fleet, &mut progress, proposal, tolerances, &mut states, first).is_ok()
-            });
+            let (took, admitted) =
+                meter.count(|| table.admit(fleet, &mut progress, proposal, tolerances, &mut states, first).is_ok());
             let checks = if admitted { whole(table) } else { before };
             (took, tables.saturating_add(checks))
         }

@@ -1,12 +1,12 @@
 //! Searches for the pairs of paths that take most instructions for each pair of their segments: changes a pair a little, keeps it if it takes no
 //! less, and goes on from there. `check.sh` compares what is found with the bound of docs/maintain/firmware.md. QEMU must run with `ICOUNT=7`.
 //!
-//! A build with `PCR_WORST_CLIMBS=1000` searches for as long as a thousand climbs of each size take, instead of the few that `check.sh` has time for.
+//! A build with `PCR_WORST_ROUNDS=100` climbs a hundred times as often as `check.sh` has time for, and reports after every round.
 #![no_std]
 #![no_main]
 
 use core::hint::black_box;
-use pcr_board::courses::{Course, ONE, Random};
+use pcr_board::courses::{self, Course, ONE, Random};
 use pcr_board::meter::Meter;
 use pcr_board::{AGENTS, Number, entry, out};
 use pcr_core::scalar::Angle;
@@ -16,13 +16,12 @@ use pcr_supervisor::{Agent, Step, scenario};
 use semihosting::process;
 use static_cell::ConstStaticCell;
 
-/// Segments of a path; climbs, unless the build says otherwise, and changes in each.
+/// Segments of a path; climbs in a round, and changes in each.
 const SIZES: [(usize, u32, u32); 4] = [(1, 64, 250), (2, 16, 250), (4, 6, 200), (8, 2, 150)];
 /// Segments of two paths whose segments all meet, and room for them and for their pieces. A Cortex-M0 has 16 KiB of RAM.
 const MANY: [usize; 2] = if cfg!(armv6m) { [5, 10] } else { [10, 24] };
 const SEGMENTS: usize = if cfg!(armv6m) { scenario::SEGMENTS } else { 48 };
 const PIECES: usize = if cfg!(armv6m) { scenario::PIECES } else { 576 };
-const CLIMBS: Option<&str> = option_env!("PCR_WORST_CLIMBS");
 
 type Storage = FleetStorage<'static, Number, { scenario::AGENTS }, SEGMENTS>;
 type Table = Ecm<Number, [EcmEntry; scenario::REGIONS], [Piece<Number>; PIECES]>;
@@ -42,30 +41,15 @@ fn main() -> ! {
 fn run() -> Option<()> {
     let (store, table) = (STORE.try_take()?, TABLE.try_take()?);
     let mut search = Search { meter: Meter::new(), store, table, random: Random::new(), too_large: 0 };
-    for (size, climbs, changes) in SIZES {
-        let climbs = CLIMBS.map_or(Some(climbs), |climbs| climbs.parse().ok())?;
-        let mut longest = 0_u32;
-        for _ in 0..climbs {
-            longest = longest.max(search.climb(size, changes)?);
+    let mut longest = [0_u32; SIZES.len()];
+    for _ in 0..courses::rounds()? {
+        for ((size, climbs, changes), most) in SIZES.into_iter().zip(&mut longest) {
+            for _ in 0..climbs {
+                *most = search.climb(size, changes)?.max(*most);
+            }
         }
-        let pairs = size.saturating_mul(size) as u32;
-        let what = Line::default()
-            .integer(per_pair(longest, pairs)?, 9)
-            .text(b"  instructions a pair of segments: two paths of ");
-        let what = what.integer(size as u32, 0).text(b", the longest found\n");
-        out::print(what.as_bytes());
+        search.report(longest)?;
     }
-    for size in MANY {
-        let pairs = size.saturating_mul(size) as u32;
-        let line = Line::default().integer(per_pair(search.many(size)?, pairs)?, 9);
-        let line = line.text(b"  instructions a pair of segments: two paths of ").integer(size as u32, 0);
-        out::print(line.text(b" that meet everywhere\n").as_bytes());
-    }
-    let (took, pairs) = twelve(&search.meter, search.store, search.table)?;
-    let line = Line::default().integer(per_pair(took, pairs)?, 9);
-    out::print(line.text(b"  instructions a pair of segments: table of all agents\n").as_bytes());
-    let line = Line::default().integer(search.too_large, 9);
-    out::print(line.text(b"  pairs of paths in this search that the table has no room for\n").as_bytes());
     Some(())
 }
 
@@ -103,6 +87,27 @@ struct Search {
 }
 
 impl Search {
+    fn report(&mut self, longest: [u32; SIZES.len()]) -> Option<()> {
+        for ((size, ..), most) in SIZES.into_iter().zip(longest) {
+            let pairs = size.saturating_mul(size) as u32;
+            let what = Line::default().integer(per_pair(most, pairs)?, 9);
+            let what = what.text(b"  instructions a pair of segments: two paths of ");
+            out::print(what.integer(size as u32, 0).text(b", the longest found\n").as_bytes());
+        }
+        for size in MANY {
+            let pairs = size.saturating_mul(size) as u32;
+            let line = Line::default().integer(per_pair(self.many(size)?, pairs)?, 9);
+            let line = line.text(b"  instructions a pair of segments: two paths of ").integer(size as u32, 0);
+            out::print(line.text(b" that meet everywhere\n").as_bytes());
+        }
+        let (took, pairs) = twelve(&self.meter, self.store, self.table)?;
+        let line = Line::default().integer(per_pair(took, pairs)?, 9);
+        out::print(line.text(b"  instructions a pair of segments: table of all agents\n").as_bytes());
+        let line = Line::default().integer(self.too_large, 9);
+        out::print(line.text(b"  pairs of paths in this search that the table has no room for\n").as_bytes());
+        Some(())
+    }
+
     /// The most instructions that a pair of paths takes on one climb.
     fn climb(&mut self, size: usize, changes: u32) -> Option<u32> {
         let mut pair = [self.random.course(), self.random.course()];
