@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # Installs the library into a scratch folder, for the host and for a Cortex-M4F, compiles the programs of this folder against it, runs
 # them, on the target in QEMU, and compares what they print with their .out files. That an image links proves that it cannot panic.
-# Then the wrapper for C++ and the example for CMake, on the host.
+# Then the wrapper for C++ and the example for CMake, on the host, and the sample for Zephyr, with a stand-in for Zephyr.
 #   --accept   writes the .out files anew
 set -euo pipefail
 cd "$(dirname "$0")"
@@ -54,3 +54,8 @@ cmake --build "$build/cmake" >"$build/cmake.log" || { cat "$build/cmake.log" >&2
 "$build/cmake/passing" | diff bindings/c/c/passing.out -
 "$build/cmake/wrapper"
 echo "bindings/c: C++ and CMake"
+cmake -S bindings/c/zephyr/sample -B "$build/zephyr" -DZephyr_DIR="$PWD/bindings/c/zephyr/stand-in" >"$build/cmake.log" || { cat "$build/cmake.log" >&2; exit 1; }
+cmake --build "$build/zephyr" >"$build/cmake.log" || { cat "$build/cmake.log" >&2; exit 1; }
+timeout 3600 qemu-system-arm -machine mps2-an386 -display none -monitor none -serial none \
+  -semihosting-config enable=on,target=native -kernel "$build/zephyr/app" </dev/null | diff bindings/c/c/robot_q16.out -
+echo "bindings/c: the module for Zephyr, without Zephyr"

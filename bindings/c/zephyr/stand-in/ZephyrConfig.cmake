@@ -1,0 +1,35 @@
+# Stands for Zephyr in tests, which cannot have all of it: the settings of prj.conf and of a Cortex-M4F, the module, and the two functions
+# of Zephyr that this calls, with the start-up code of the other examples. It has no kernel, and reads no Kconfig.
+set(CMAKE_SYSTEM_NAME Generic)
+set(CMAKE_C_COMPILER arm-none-eabi-gcc)
+set(CMAKE_TRY_COMPILE_TARGET_TYPE STATIC_LIBRARY)
+project(Zephyr-Kernel LANGUAGES C)
+
+set(CONFIG_CPU_CORTEX_M4 y)
+set(CONFIG_FP_HARDABI y)
+file(STRINGS ${CMAKE_SOURCE_DIR}/prj.conf settings REGEX "^CONFIG_")
+foreach(setting IN LISTS settings)
+  string(REGEX MATCH "^([^=]*)=(.*)$" setting "${setting}")
+  set(${CMAKE_MATCH_1} ${CMAKE_MATCH_2})
+endforeach()
+
+set(start ${CMAKE_CURRENT_LIST_DIR}/../../c)
+add_executable(app ${start}/start.c)
+set(cpu -mcpu=cortex-m4 -mthumb -mfpu=fpv4-sp-d16 -mfloat-abi=hard)
+target_compile_options(app PRIVATE ${cpu} -std=c11 -O2 -Wall -Wextra -Werror -ffunction-sections -fdata-sections)
+target_link_options(app PRIVATE ${cpu} -Wl,--gc-sections -nostartfiles -T ${start}/m4.ld --specs=nano.specs --specs=rdimon.specs -u _printf_float)
+
+function(zephyr_library_import name path)
+  add_library(${name} STATIC IMPORTED GLOBAL)
+  set_target_properties(${name} PROPERTIES IMPORTED_LOCATION ${path})
+  target_link_libraries(app PRIVATE ${name} m)
+endfunction()
+function(zephyr_include_directories)
+  target_include_directories(app PRIVATE ${ARGN})
+endfunction()
+
+foreach(module IN LISTS ZEPHYR_EXTRA_MODULES)
+  file(STRINGS ${module}/zephyr/module.yml folder REGEX "^  cmake: ")
+  string(REPLACE "  cmake: " "" folder "${folder}")
+  add_subdirectory(${module}/${folder} ${CMAKE_BINARY_DIR}/modules/pcr)
+endforeach()
