@@ -108,6 +108,8 @@ impl<'a, S: Scalar> Motion<'a, S> {
     }
 
     /// The motion of what [`Motion::of`] has accepted before.
+    // Not inlined: both callers would have a copy of it.
+    #[cfg_attr(not(feature = "std"), inline(never))]
     pub(crate) fn accepted(
         path: PathRef<'a, S>,
         profile: ProfileRef<'a, S>,
