@@ -4,6 +4,7 @@ use pcr_rmf_mapf::Footprint;
 use serde::Deserialize;
 use std::collections::HashSet;
 use std::fmt;
+use std::path::PathBuf;
 
 /// The configuration of the node.
 #[derive(Clone, Debug, PartialEq, Deserialize)]
@@ -15,8 +16,23 @@ pub struct Config {
     pub max_age: f64,
     /// The topic of the states of Open-RMF's fleets, `rmf_fleet_msgs/FleetState`, if a robot is in one.
     pub fleet_states: Option<String>,
+    /// Whether the time is that of `/clock`, `rosgraph_msgs/Clock`, and not that of the system.
+    #[serde(default)]
+    pub use_sim_time: bool,
+    /// The route graph on which nav2 plans the routes of robots, if a robot is told which edges are closed.
+    pub route_graph: Option<RouteGraphConfig>,
     /// The robots. Where two of them enter the same place at the same time, the one that is named first goes first.
     pub robots: Vec<RobotConfig>,
+}
+
+/// A route graph, and who closes its edges.
+#[derive(Clone, Debug, PartialEq, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct RouteGraphConfig {
+    /// Its file, GeoJSON; from the folder of the configuration.
+    pub file: PathBuf,
+    /// How long a robot stands before the edges that it is in the way of are closed \[s\].
+    pub stands: f64,
 }
 
 /// A robot.
@@ -31,6 +47,8 @@ pub struct RobotConfig {
     pub fleet: Option<String>,
     /// The level of a robot in such a fleet: that of the frame.
     pub level: Option<String>,
+    /// The service of its route server that closes edges, `nav2_msgs/DynamicEdges`.
+    pub route_server: Option<String>,
     /// How fast it drives, if its planner gives no times: those of its messages are not used then.
     pub pace: Option<Pace>,
     /// Radius of a disc around its position \[m\].
@@ -80,6 +98,8 @@ pub enum ConfigError {
         /// The robot.
         robot: String,
     },
+    /// A robot has a route server, but there is no route graph, or the other way round.
+    RouteGraph,
     /// A robot has neither a radius nor an outline, or both.
     Footprint {
         /// The robot.
@@ -118,10 +138,18 @@ impl Config {
         if self.fleet_states.as_deref() == Some("") {
             return Err(ConfigError::Empty { of: "the configuration".to_owned(), key: "fleet_states" });
         }
+        if self.route_graph.is_some() != self.robots.iter().any(|robot| robot.route_server.is_some()) {
+            return Err(ConfigError::RouteGraph);
+        }
+        if self.route_graph.as_ref().is_some_and(|graph| !(graph.stands.is_finite() && graph.stands >= 0.0)) {
+            return Err(ConfigError::Number { of: "\"route_graph\"".to_owned(), key: "stands" });
+        }
         let mut taken = HashSet::new();
         for robot in &self.robots {
             let of = || format!("robot \"{}\"", robot.name);
-            let texts = [("name", Some(&robot.name)), ("path", robot.path.as_ref()), ("fleet", robot.fleet.as_ref())];
+            let server = ("route_server", robot.route_server.as_ref());
+            let texts =
+                [("name", Some(&robot.name)), ("path", robot.path.as_ref()), ("fleet", robot.fleet.as_ref()), server];
             for (key, text) in texts.into_iter().filter_map(|(key, text)| Some((key, text?))) {
                 if text.is_empty() {
                     return Err(ConfigError::Empty { of: of(), key });
@@ -196,6 +224,7 @@ impl fmt::Display for ConfigError {
                 f,
                 "robot \"{robot}\" needs either \"path\", or \"fleet\" and \"level\" (without \"pace\"), and then \"fleet_states\" beside the robots"
             ),
+            Self::RouteGraph => f.write_str("\"route_graph\" and a robot with a \"route_server\" need one another"),
             Self::Footprint { robot } => write!(f, "robot \"{robot}\" needs either \"radius\" or \"outline\""),
             Self::Outline { robot, problem } => write!(f, "robot \"{robot}\": its outline is not valid: {problem}"),
         }

@@ -1,5 +1,6 @@
 //! Messages of ROS 2 that are read and written: fields in the order of the published `.msg` files, which is that of their bytes.
 
+use ros2_client::Message;
 use serde::{Deserialize, Serialize};
 
 /// Nanoseconds of a second.
@@ -239,4 +240,39 @@ pub struct FleetRobotState {
 pub struct FleetState {
     pub name: String,
     pub robots: Vec<FleetRobotState>,
+}
+
+/// `nav2_msgs/msg/EdgeCost`.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[allow(missing_docs)]
+pub struct EdgeCost {
+    pub edgeid: u16,
+    pub cost: f32,
+}
+
+/// The request of `nav2_msgs/srv/DynamicEdges`. What is in both lists is open afterwards.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[allow(missing_docs)]
+pub struct DynamicEdgesRequest {
+    pub closed_edges: Vec<u16>,
+    pub opened_edges: Vec<u16>,
+    pub adjust_edges: Vec<EdgeCost>,
+}
+
+/// The response of `nav2_msgs/srv/DynamicEdges`.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[allow(missing_docs)]
+pub struct DynamicEdgesResponse {
+    pub success: bool,
+}
+
+impl Message for DynamicEdgesRequest {}
+
+impl Message for DynamicEdgesResponse {}
+
+/// `rosgraph_msgs/msg/Clock`.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+pub struct Clock {
+    /// The simulated time.
+    pub clock: Time,
 }

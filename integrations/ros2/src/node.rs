@@ -1,12 +1,14 @@
 //! The node: topics in and out.
 
-use crate::messages::{FleetState, MarkerArray, PathMessage, Time};
+use crate::messages::{Clock, FleetState, MarkerArray, PathMessage, Time};
 use crate::report::{AuthoritiesReport, ConflictsReport};
-use crate::{Answer, Config, Watch};
+use crate::route_servers::RouteServers;
+use crate::{Answer, Closures, Config, RouteGraph, Watch};
 use ros2_client::dds::rustdds::mio1::{Events, Interest, Poll, Token};
 use ros2_client::qos::{History, WhenFull};
 use ros2_client::{
-    Context, ContextOptions, MessageTypeName, Name, Node, NodeName, NodeOptions, Publisher, QosProfile, Subscription,
+    Context, ContextOptions, MessageTypeName, Name, Node, NodeName, NodeOptions, Publisher, QosProfile, ServiceMapping,
+    Subscription,
 };
 use std::error::Error;
 use std::time::{Duration, Instant, SystemTime, UNIX_EPOCH};
@@ -19,32 +21,42 @@ type Failure = Box<dyn Error>;
 /// The node with its topics.
 pub struct PcrNode {
     watch: Watch,
+    closures: Option<Closures>,
+    /// The time of `/clock`, where that is used.
+    simulated: Option<Time>,
     // Dropped last: topics belong to it.
     paths: Vec<(usize, Subscription<PathMessage>)>,
     fleets: Option<Subscription<FleetState>>,
+    clock: Option<Subscription<Clock>>,
+    servers: RouteServers,
     conflicts: Publisher<ConflictsReport>,
     authorities: Publisher<AuthoritiesReport>,
     markers: Publisher<MarkerArray>,
     _node: Node,
 }
 
-fn name(of: &str) -> Result<Name, Failure> {
+pub(crate) fn name(of: &str) -> Result<Name, Failure> {
     // The topics of a configuration are absolute, with or without the slash.
-    Name::parse(&format!("/{}", of.trim_start_matches('/')))
-        .map_err(|error| format!("topic \"{of}\": {error:?}").into())
+    Name::parse(&format!("/{}", of.trim_start_matches('/'))).map_err(|error| format!("name \"{of}\": {error:?}").into())
 }
 
 /// Paths and what is published are reliable.
-fn reliable(depth: usize) -> QosProfile {
+pub(crate) fn reliable(depth: usize) -> QosProfile {
     QosProfile::publisher_default().reliability_reliable(WhenFull::DEFAULT).history(History::KeepLast { depth })
 }
 
 impl PcrNode {
-    /// Joins a domain (`ROS_DOMAIN_ID`), subscribes to all paths and offers what is published.
+    /// Joins a domain (`ROS_DOMAIN_ID`), subscribes to all paths and offers what is published. `graph` is that of the configuration, if it has one;
+    /// `mapping` is how the middleware of the route servers tells to which request an answer belongs.
     ///
     /// # Errors
     /// Why not.
-    pub fn new(config: Config, domain: u16) -> Result<Self, Failure> {
+    pub fn new(
+        config: Config,
+        graph: Option<RouteGraph>,
+        domain: u16,
+        mapping: ServiceMapping,
+    ) -> Result<Self, Failure> {
         let context = Context::with_options(ContextOptions::new().domain_id(domain))?;
         let mut node = context.new_node(NodeName::new("/", "pcr")?, NodeOptions::new())?;
         let mut paths = Vec::with_capacity(config.robots.len());
@@ -62,6 +74,18 @@ impl PcrNode {
             }
             None => None,
         };
+        let clock = if config.use_sim_time {
+            // As it is published: only the latest one counts, and none is sent again.
+            let latest =
+                QosProfile::subscription_default().reliability_best_effort().history(History::KeepLast { depth: 1 });
+            let topic = node.create_topic(&name("clock")?, MessageTypeName::new("rosgraph_msgs", "Clock"), &latest)?;
+            Some(node.create_subscription(&topic, None)?)
+        } else {
+            None
+        };
+        let servers = RouteServers::new(&config, &mut node, mapping)?;
+        let stands = config.route_graph.as_ref().map(|graph| graph.stands);
+        let closures = graph.zip(stands).map(|(graph, stands)| Closures::new(graph, stands, config.robots.len()));
         // Nothing is kept for those who come late: it may be of paths that do not hold any more, and there is an answer at least each second.
         let latest = reliable(1);
         let own = |kind| MessageTypeName::new("pcr_msgs", kind);
@@ -72,6 +96,10 @@ impl PcrNode {
         Ok(Self {
             paths,
             fleets,
+            clock,
+            servers,
+            closures,
+            simulated: None,
             conflicts: node.create_publisher(&conflicts, None)?,
             authorities: node.create_publisher(&authorities, None)?,
             markers: node.create_publisher(&markers, None)?,
@@ -93,6 +121,10 @@ impl PcrNode {
         if let Some(subscription) = &mut self.fleets {
             poll.registry().register(subscription, Token(0), Interest::READABLE)?;
         }
+        if let Some(subscription) = &mut self.clock {
+            poll.registry().register(subscription, Token(0), Interest::READABLE)?;
+        }
+        self.servers.register(poll.registry())?;
         let mut events = Events::with_capacity(64);
         let mut told = Vec::new();
         loop {
@@ -100,11 +132,18 @@ impl PcrNode {
             loop {
                 let left = due.saturating_duration_since(Instant::now());
                 poll.poll(&mut events, Some(left))?;
+                self.servers.take();
+                self.take_clock();
                 if self.take() || left.is_zero() {
                     break;
                 }
             }
-            let answer = self.watch.answer(now()?);
+            // Before the first time of a simulation nothing is claimed.
+            let Some(now) = self.now()? else { continue };
+            if let Some(closures) = &mut self.closures {
+                self.servers.close(self.watch.closed_edges(closures, now));
+            }
+            let answer = self.watch.answer(now);
             log(&answer, &mut told);
             self.publish(answer);
         }
@@ -134,6 +173,26 @@ impl PcrNode {
         any
     }
 
+    /// Takes the time of a simulation.
+    fn take_clock(&mut self) {
+        while let Some(subscription) = &self.clock {
+            match subscription.take() {
+                Ok(Some((Clock { clock }, _))) => self.simulated = Some(clock),
+                Ok(None) => break,
+                Err(problem) => eprintln!("pcr-ros2: /clock cannot be read: {problem:?}"),
+            }
+        }
+    }
+
+    /// The time of the simulation, if there is one yet, or of the system's clock.
+    fn now(&self) -> Result<Option<Time>, Failure> {
+        if self.clock.is_some() {
+            return Ok(self.simulated);
+        }
+        let since = SystemTime::now().duration_since(UNIX_EPOCH)?;
+        Ok(Some(Time { sec: i32::try_from(since.as_secs())?, nanosec: since.subsec_nanos() }))
+    }
+
     /// Publishes an answer. One that a reader is too slow for is told, and not kept: the next one comes within a second.
     fn publish(&self, answer: Answer) {
         let sent = [
@@ -145,12 +204,6 @@ impl PcrNode {
             eprintln!("pcr-ros2: {topic} were not sent: {problem}");
         }
     }
-}
-
-/// The time of the system's clock.
-fn now() -> Result<Time, Failure> {
-    let since = SystemTime::now().duration_since(UNIX_EPOCH)?;
-    Ok(Time { sec: i32::try_from(since.as_secs())?, nanosec: since.subsec_nanos() })
 }
 
 /// Tells refusals when they begin.

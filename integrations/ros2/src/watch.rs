@@ -1,13 +1,14 @@
 //! The robots that are watched: what is known of each of them, and what follows from it.
 
 use crate::answer::{Answer, Known};
+use crate::closures::Closures;
 use crate::config::Config;
 use crate::messages::{FleetRobotState, FleetState, Header, PathMessage, Time};
 use crate::order::Order;
 use crate::planned_path::PlannedPath;
 use crate::refusal::Refusal;
 use crate::report::RefusalReport;
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 
 /// The latest paths of all robots.
 #[derive(Clone, Debug)]
@@ -87,13 +88,16 @@ impl Watch {
         }
     }
 
+    /// For each robot the edges that are to be closed for it, or why that is not known.
+    pub fn closed_edges<'a>(&self, closures: &'a mut Closures, now: Time) -> &'a [Result<BTreeSet<u16>, Refusal>] {
+        closures.take(&usable(&self.paths, self.config.max_age, now), now);
+        closures.of_robots(&self.config.robots, now)
+    }
+
     /// What follows from the paths, from `now` on.
     pub fn answer(&mut self, now: Time) -> Answer {
-        let known: Vec<Known<'_>> = (self.config.robots.iter().zip(&self.paths))
-            .map(|(robot, path)| {
-                let path = path.as_ref().map_err(Clone::clone);
-                Known::new(robot, path.and_then(|path| path.check_age(now, self.config.max_age).map(|()| path)), now)
-            })
+        let known: Vec<Known<'_>> = (self.config.robots.iter().zip(usable(&self.paths, self.config.max_age, now)))
+            .map(|(robot, path)| Known::new(robot, path, now))
             .collect();
         let states = self.config.fleet_states.clone().unwrap_or_default();
         let unreadable = self.unreadable.iter().map(|problem| Refusal::Unreadable(problem.clone()));
@@ -117,4 +121,10 @@ impl Watch {
         answer.conflicts.refusals = refusals;
         answer
     }
+}
+
+/// What can be used of each robot now: its last message, unless that was refused or is too old.
+fn usable(paths: &[Result<PlannedPath, Refusal>], max_age: f64, now: Time) -> Vec<Result<&PlannedPath, Refusal>> {
+    let check = |path| PlannedPath::check_age(path, now, max_age).map(|()| path);
+    paths.iter().map(|path| path.as_ref().map_err(Clone::clone).and_then(check)).collect()
 }

@@ -4,6 +4,9 @@
 //! distance to the end, because the discs overlap less and less deeply. So D² falls linearly, and two values inside
 //! give a guess of the end. It is only a guess: the value that is returned has been tried, with no contact, and a value inside is no
 //! further from it than the resolution. Where the guesses do not help, the bracket is bisected.
+//!
+//! A contact that a start or an arrival cuts off gets shorter in another way: then D itself falls linearly. Where that is possible, both guesses
+//! are made, and the one that moved less since the value before is followed.
 
 use crate::scalar::{Scalar, Wide};
 
@@ -48,6 +51,8 @@ pub(super) struct ForbiddenBracket<S> {
     outside: S,
     /// The bracket is not made narrower than this.
     resolution: S,
+    /// Whether the start or the arrival of an agent may cut a contact off.
+    cut: bool,
 }
 
 impl<S: Scalar> ForbiddenBracket<S> {
@@ -57,7 +62,7 @@ impl<S: Scalar> ForbiddenBracket<S> {
         let (mut outside, mut step) = (near, (near - inside).abs().max(resolution));
         loop {
             if trial(outside) == Trial::Clear {
-                return Some(Self { inside, outside, resolution });
+                return Some(Self { inside, outside, resolution, cut: false });
             }
             let next = if rises { (outside + step).min(far) } else { (outside - step).max(far) };
             // In the far range of floating point a step may change nothing.
@@ -67,6 +72,11 @@ impl<S: Scalar> ForbiddenBracket<S> {
             // Values and steps are at most twice the limit, so that no sum overflows.
             (outside, step) = (next, step.double().min(S::LIMIT.double()));
         }
+    }
+
+    /// The same where the start or the arrival of an agent may cut a contact off.
+    pub(super) fn with_cuts(self, cut: bool) -> Self {
+        Self { cut, ..self }
     }
 
     /// The value outside, which is clear.
@@ -86,19 +96,24 @@ impl<S: Scalar> ForbiddenBracket<S> {
 
     /// The value outside when the bracket has been narrowed down, and the nearest one that is clear.
     fn narrowed(&self, trial: &impl Fn(S) -> Trial<S>, strictly: bool) -> (S, S) {
-        let Self { mut inside, mut outside, resolution } = *self;
+        let Self { mut inside, mut outside, resolution, cut } = *self;
         let mut clear = outside;
-        // The last two values inside, and the previous guess.
-        let (mut near, mut far, mut guess) = (trial(inside).contact(strictly).map(|long| (inside, long)), None, None);
+        // The last two values inside, and the previous guesses.
+        let (mut near, mut far) = (trial(inside).contact(strictly).map(|long| (inside, long)), None);
+        let mut before = [None; 2];
         for number in 0..TRIALS {
             if (outside - inside).abs() <= resolution {
                 break;
             }
             let between = |place: &S| inside.min(outside) < *place && *place < inside.max(outside);
-            let next = near.zip(far).and_then(|(near, far)| vanishing(near, far)).filter(between);
+            let inner = near.zip(far);
+            let squares = inner.and_then(|(near, far)| vanishing(near, far)).filter(between);
+            let plain = inner.filter(|_| cut).and_then(|(near, far)| vanishing_cut(near, far)).filter(between);
+            let guesses = [squares, plain];
+            let (next, guess) = steadier(guesses, before);
             let places =
                 next.filter(|_| number % PATIENCE != 0).map(|next| beside(next, guess, inside, outside, resolution));
-            guess = next;
+            before = guesses;
             let place = places.and_then(|places| places.into_iter().find(between));
             let place = place.unwrap_or_else(|| inside + (outside - inside).half());
             let found = trial(place);
@@ -128,6 +143,26 @@ fn vanishing<S: Scalar>((near, short): (S, S), (far, long): (S, S)) -> Option<S>
     let part = (near - far).abs().portion(short, long + short);
     let left = part.times(short).narrow().quotient(long - short);
     Some(if near < far { near - left } else { near + left })
+}
+
+/// The same for the durations themselves.
+fn vanishing_cut<S: Scalar>((near, short): (S, S), (far, long): (S, S)) -> Option<S> {
+    if short >= long {
+        return None;
+    }
+    // (near - far) short / (long - short)
+    let left = (near - far).abs().times(short).narrow().quotient(long - short);
+    Some(if near < far { near - left } else { near + left })
+}
+
+/// Of two guesses the one that is nearer to the same one before, and that one; the first one if neither is.
+fn steadier<S: Scalar>([first, second]: [Option<S>; 2], before: [Option<S>; 2]) -> (Option<S>, Option<S>) {
+    let moved = |now: Option<S>, before: Option<S>| now.zip(before).map(|(now, before)| (now - before).abs());
+    match (moved(first, before[0]), moved(second, before[1])) {
+        (Some(one), Some(other)) if other < one => (second, before[1]),
+        (None, Some(_)) => (second, before[1]),
+        _ => (first, before[0]),
+    }
 }
 
 /// Values to try next to a guess, at a distance equal to its uncertainty: one short of it, which improves the next
@@ -194,6 +229,26 @@ mod tests {
     }
 
     #[test]
+    fn ends_at_which_contacts_are_cut_off_take_few_trials() {
+        for sign in [1.0, -1.0] {
+            for end in [-0.4, 0.05, 0.9] {
+                let count = Cell::new(0);
+                let tried = |at: f64| {
+                    count.set(count.get() + 1);
+                    if sign * at < end { Trial::Contact(end - sign * at) } else { Trial::Clear }
+                };
+                let bracket = ForbiddenBracket::new(-sign, [sign; 2], 1e-9, &tried).unwrap();
+                let found = bracket.with_cuts(true).shrunk(&tried);
+                assert_eq!(tried(found), Trial::Clear);
+                let excess = sign * found - end;
+                assert!((0.0..=1e-9).contains(&excess), "{sign} {end}: {excess}");
+                // With the squares of the durations alone they are more than 50.
+                assert!(count.get() < 12, "{sign} {end}: {}", count.get());
+            }
+        }
+    }
+
+    #[test]
     fn guesses_are_where_the_squares_of_durations_vanish() {
         let long = |at: f64, end: f64| (at, (end - at).abs().sqrt());
         for end in [3.0, -3.0, 0.5] {
@@ -201,6 +256,10 @@ mod tests {
                 let [near, far] = [1.0, 4.0].map(|away| long(end - side * away, end));
                 let guess = vanishing(near, far).unwrap();
                 assert!((guess - end).abs() < 1e-12, "{guess} {end}");
+                let [near_cut, far_cut] = [near, far].map(|(at, _)| (at, (end - at).abs()));
+                let cut = vanishing_cut(near_cut, far_cut).unwrap();
+                assert!((cut - end).abs() < 1e-12, "{cut} {end}");
+                assert_eq!(vanishing_cut(far_cut, near_cut), None);
                 assert_eq!(vanishing(far, near), None);
                 assert_eq!(vanishing(near, near), None);
             }

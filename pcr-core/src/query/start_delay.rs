@@ -34,7 +34,7 @@ impl<S: Scalar> RegionRef<'_, S> {
     pub fn forbidden_delays(&self) -> Interval<S> {
         let [before, after] = self.lets_pass();
         let allowance = self.allowance();
-        self.delays(allowance, [before, after], &|delay| self.after(delay, allowance))
+        self.delays(allowance, [before, after], false, &|delay| self.after(delay, allowance))
     }
 
     /// The delays of the ego's start \[s\] with which it meets this region while both agents are under way, rounded
@@ -44,15 +44,16 @@ impl<S: Scalar> RegionRef<'_, S> {
     /// Accuracy, lateness and cost are those of [`RegionRef::forbidden_delays`].
     pub fn passing_delays(&self) -> Interval<S> {
         let allowance = self.allowance();
-        self.delays(allowance, [true; 2], &|delay| self.in_passing(delay, allowance))
+        self.delays(allowance, [true; 2], true, &|delay| self.in_passing(delay, allowance))
     }
 
-    /// The interval of delays around one inside, of which each end is either finite or not.
-    fn delays(&self, allowance: S, finite: [bool; 2], trial: &impl Fn(S) -> Trial<S>) -> Interval<S> {
+    /// The interval of delays around one inside, of which each end is either finite or not; contacts may be `cut` off by a start or an arrival.
+    fn delays(&self, allowance: S, finite: [bool; 2], cut: bool, trial: &impl Fn(S) -> Trial<S>) -> Interval<S> {
         let (near, far) = (self.near_delays(allowance), self.far_delays());
         let met = self.delays_inside().find(|&delay| near.contains(delay) && trial(delay).is_inside());
         let bracket = |ends| ForbiddenBracket::new(met.unwrap_or(near.middle()), ends, self.resolution(), trial);
-        let end = |ends| bracket(ends).map(|bracket| met.map_or(bracket.outside(), |_| bracket.shrunk(trial)));
+        let end =
+            |ends| bracket(ends).map(|bracket| met.map_or(bracket.outside(), |_| bracket.with_cuts(cut).shrunk(trial)));
         let [lo, hi] = [[near.lo.max(far.lo), far.lo], [near.hi.min(far.hi), far.hi]];
         // A delay that is free, but out of the range of the format, was not tried. No motion can have it.
         let apart = self.apart_delays();

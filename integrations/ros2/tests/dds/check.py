@@ -26,8 +26,9 @@ MESSAGES = Messages(pathlib.Path(__file__).resolve().parents[2] / "pcr_msgs")
 PATIENCE = 60
 FLEET_ROBOT = {"name": "cart", "fleet": "tiny", "level": "L1", "outline": [[-0.5, -0.3], [0.5, -0.3], [0.5, 0.3], [-0.5, 0.3]],
                "margin": 0.0}
-CONFIG = {"frame": "map", "max_age": 600, "fleet_states": "/fleet_states",
-          "robots": [{"name": "east", "path": "/east/plan", "radius": 0.4, "margin": 0.1},
+SERVICE = "/east/route_server/DynamicEdgesScorer/adjust_edges"
+CONFIG = {"frame": "map", "max_age": 600, "fleet_states": "/fleet_states", "route_graph": {"file": "graph.geojson", "stands": 0.1},
+          "robots": [{"name": "east", "path": "/east/plan", "radius": 0.4, "margin": 0.1, "route_server": SERVICE},
                      {"name": "north", "path": "/north/plan", "radius": 0.3, "margin": 0.05}, FLEET_ROBOT]}
 REACH = 0.4 + 0.1 + 0.3 + 0.05
 UNKNOWN, CLEAR, CONFLICT = (MESSAGES.constant("pcr_msgs/msg/Pair", name) for name in ("UNKNOWN", "CLEAR", "CONFLICT"))
@@ -52,12 +53,27 @@ def path(poses, frame="map"):
     return {"header": {"stamp": stamp(0), "frame_id": frame}, "poses": stamped}
 
 
-def fleet(*robots):
-    """The state of a fleet whose robots stand."""
+# Nodes and edges: the robot of the fleet, 0.6 m wide, is at (0, 20).
+NODES = [(-3, 20), (3, 20), (-3, 21), (3, 21), (-3, 20.79)]
+LINES = {11: (0, 1), 65535: (2, 3), 12: (4, 1)}
+
+
+def graph():
+    """The route graph."""
+    def feature(kind, coordinates, properties):
+        return {"type": "Feature", "properties": properties, "geometry": {"type": kind, "coordinates": coordinates}}
+
+    nodes = [feature("Point", node, {"id": k, "frame": "map"}) for k, node in enumerate(NODES)]
+    edges = [feature("MultiLineString", [[NODES[a], NODES[b]]], {"id": k, "startid": a, "endid": b}) for k, (a, b) in LINES.items()]
+    return {"type": "FeatureCollection", "features": nodes + edges}
+
+
+def fleet(*robots, goes_on=True):
+    """The state of a fleet."""
     location = {"t": stamp(0), "yaw": 0.0, "obey_approach_speed_limit": True, "approach_speed_limit": 0.5, "level_name": "L1", "index": 7}
     states = [{"name": name, "model": "small", "task_id": "t1", "seq": 3, "battery_percent": 80.0,
                "mode": {"mode": 2, "mode_request_id": 5, "performing_action": ""}, "location": location | {"x": x, "y": y},
-               "path": [location | {"x": x, "y": y + 1.0, "t": stamp(9), "index": 8}]} for name, x, y in robots]
+               "path": [location | {"x": x, "y": y + 1.0, "t": stamp(9), "index": 8}] if goes_on else []} for name, x, y in robots]
     return {"name": "tiny", "robots": states}
 
 
@@ -72,6 +88,9 @@ class Side:
         self.paths = {robot["name"]: self.writer(robot["path"], MESSAGES["nav_msgs/msg/Path"])
                       for robot in CONFIG["robots"] if "path" in robot}
         self.fleets = self.writer(CONFIG["fleet_states"], MESSAGES["rmf_fleet_msgs/msg/FleetState"])
+        request, self.answer = MESSAGES.service("nav2_msgs", "DynamicEdges")
+        self.requests = DataReader(self.participant, Topic(self.participant, f"rq{SERVICE}Request", request, qos=self.plain), qos=self.plain)
+        self.replies = DataWriter(self.participant, Topic(self.participant, f"rr{SERVICE}Reply", self.answer, qos=self.plain), qos=self.plain)
         self.read()
 
     def read(self):
@@ -87,8 +106,8 @@ class Side:
 
     def matched(self):
         writers = [*self.paths.values(), self.fleets]
-        return all(writer.get_matched_subscriptions() for writer in writers) and all(
-            reader.get_matched_publications() for reader in self.readers.values())
+        return all(writer.get_matched_subscriptions() for writer in [*writers, self.replies]) and all(
+            reader.get_matched_publications() for reader in [*self.readers.values(), self.requests])
 
     def take(self):
         """The answers that are complete: conflicts, authorities and markers of one time."""
@@ -112,6 +131,21 @@ class Side:
                 last = answer
             time.sleep(0.01)
         sys.exit(f"no answer: {what}; the last one is {last}")
+
+    def asked(self, closed, opened):
+        """The next request, which has to be this one."""
+        until = time.monotonic() + PATIENCE
+        while time.monotonic() < until:
+            for request in self.requests.take(N=1):
+                found = (list(request.closed_edges), list(request.opened_edges), list(request.adjust_edges))
+                assert found == (closed, opened, []), found
+                return request
+            time.sleep(0.01)
+        sys.exit(f"no request to close {closed} and open {opened}")
+
+    def reply(self, request, success, number=0):
+        """Answers a request, or another one."""
+        self.replies.write(self.answer(client=request.client, number=request.number + number, success=success))
 
     def settled(self, again):
         """An answer to all that was sent, of which the last is `again`. The node reads before it takes its time: the first answer after the
@@ -269,6 +303,55 @@ def long_path(side):
     assert east.state == FREE and abs(east.length - length) < 1e-6, (east, length)
 
 
+def closed_edges(side):
+    """A robot that stands closes the edges that another one could not drive, which is told until it is done; when it goes on, they are open."""
+    def cart(**way):
+        side.fleets.write(MESSAGES.make("rmf_fleet_msgs/msg/FleetState", fleet(("cart", 0.0, 20.0), **way)))
+
+    cart(goes_on=False)
+    first = side.asked([11, 12], [])
+    # There is no answer, and then one that is no answer to this.
+    second = side.asked([11, 12], [])
+    assert second.client == first.client and second.number != first.number, (first, second)
+    side.reply(second, True, number=1000)
+    third = side.asked([11, 12], [])
+    # It could not be done.
+    side.reply(third, False)
+    side.reply(side.asked([11, 12], []), True)
+    # Again and again it is told, should the server have forgotten it.
+    side.reply(side.asked([11, 12], []), True)
+    cart()
+    side.reply(side.asked([], [11, 12]), True)
+
+
+def simulated(binary, file, side):
+    """With `use_sim_time` nothing is told before there is a time, and then all of that time."""
+    file.write_text(json.dumps(CONFIG | {"use_sim_time": True}))
+    node = subprocess.Popen([binary, file], env=environment())
+    try:
+        side.read()
+        latest = Qos(Policy.Reliability.BestEffort, Policy.DataRepresentation(use_cdrv0_representation=True), Policy.History.KeepLast(1))
+        kind = MESSAGES["rosgraph_msgs/msg/Clock"]
+        clock = DataWriter(side.participant, Topic(side.participant, "rt/clock", kind, qos=latest), qos=latest)
+        until = time.monotonic() + PATIENCE
+        while not (clock.get_matched_subscriptions() and side.matched()):
+            if time.monotonic() > until or node.poll() is not None:
+                sys.exit("the node with simulated time is not found")
+            time.sleep(0.01)
+        at = {"sec": 4000, "nanosec": 7}
+        told = 0
+        while told < 2:
+            clock.write(MESSAGES.make("rosgraph_msgs/msg/Clock", {"clock": at}))
+            for answer in side.take():
+                assert nanoseconds(answer) == 4000 * 10 ** 9 + 7, answer
+                told += 1
+            assert time.monotonic() < until, "no answer with simulated time"
+            time.sleep(0.05)
+    finally:
+        node.terminate()
+        node.wait()
+
+
 def place(poses, at):
     """Where a robot is, and how fast, from this time on."""
     for (t0, x0, y0, _), (t1, x1, y1, _) in zip(poses, poses[1:]):
@@ -337,6 +420,11 @@ def random_paths(side):
     return sum(counts.values())
 
 
+def environment(**changed):
+    """That of the node."""
+    return os.environ | {"ROS_DOMAIN_ID": str(DOMAIN), "RMW_IMPLEMENTATION": "rmw_cyclonedds_cpp"} | changed
+
+
 def starts(binary, folder):
     """What is wrong with a command or a configuration is told."""
     file = folder / "bad.json"
@@ -347,7 +435,12 @@ def starts(binary, folder):
     found = subprocess.run([binary], capture_output=True, text=True, timeout=PATIENCE)
     assert found.returncode == 2 and "CONFIGURATION.json" in found.stderr, found
     file.write_text(json.dumps(CONFIG))
-    found = subprocess.run([binary, file], capture_output=True, text=True, timeout=PATIENCE, env=os.environ | {"ROS_DOMAIN_ID": "many"})
+    found = subprocess.run([binary, file], capture_output=True, text=True, timeout=PATIENCE)
+    assert found.returncode == 1 and "graph.geojson: " in found.stderr, found
+    (folder / "graph.geojson").write_text(json.dumps(graph()))
+    found = subprocess.run([binary, file], capture_output=True, text=True, timeout=PATIENCE, env=environment(RMW_IMPLEMENTATION="rmw_other"))
+    assert found.returncode == 1 and '"rmw_other" answers requests is not known' in found.stderr, found
+    found = subprocess.run([binary, file], capture_output=True, text=True, timeout=PATIENCE, env=environment(ROS_DOMAIN_ID="many"))
     assert found.returncode == 1 and 'ROS_DOMAIN_ID: "many" is not a domain' in found.stderr, found
 
 
@@ -364,7 +457,7 @@ def main():
         file = folder / "robots.json"
         file.write_text(json.dumps(CONFIG))
         with open(folder / "log", "w") as log:
-            node = subprocess.Popen([binary, file], env=os.environ | {"ROS_DOMAIN_ID": str(DOMAIN)}, stderr=log)
+            node = subprocess.Popen([binary, file], env=environment(), stderr=log)
         try:
             side = Side(DOMAIN)
             until = time.monotonic() + PATIENCE
@@ -375,6 +468,7 @@ def main():
             crossing(side)
             refused(side)
             unreadable(side)
+            closed_edges(side)
             long_path(side)
             number = random_paths(side)
             assert node.poll() is None
@@ -382,8 +476,11 @@ def main():
             node.terminate()
             node.wait()
         log = (folder / "log").read_text()
+        assert f"pcr-ros2: {SERVICE}: no answer; the server is asked until there is one" in log.splitlines(), log
+        assert f"pcr-ros2: {SERVICE}: the server says that it could not; it is asked again" in log.splitlines(), log
+        simulated(binary, file, side)
         assert 'pcr-ros2: north: the path is in frame "odom", not "map"' in log.splitlines(), log
-    print(f"pcr-ros2 and CycloneDDS, domain {DOMAIN}: every field of a crossing, refusals, {number} random paths")
+    print(f"pcr-ros2 and CycloneDDS, domain {DOMAIN}: every field of a crossing, refusals, edges closed and opened, simulated time, {number} random paths")
 
 
 main()

@@ -5,7 +5,7 @@ from cyclonedds.idl import make_idl_struct, types
 from rosbags.interfaces import Nodetype
 from rosbags.typesys import Stores, get_types_from_msg, get_typestore
 
-BASES = {"bool": bool, "string": str, "float32": types.float32, "float64": types.float64, "uint8": types.uint8, "int32": types.int32,
+BASES = {"bool": bool, "string": str, "float32": types.float32, "float64": types.float64, "uint8": types.uint8, "uint16": types.uint16, "int32": types.int32,
          "uint32": types.uint32, "int64": types.int64, "uint64": types.uint64}
 
 # Fields of Open-RMF's fleet states, version 4.1.0 of rmf_fleet_msgs (Apache-2.0).
@@ -18,12 +18,20 @@ FLEETS = {
                 "float32 approach_speed_limit\nstring level_name\nuint64 index",
 }
 
+# The service of nav2's route server that closes edges, of nav2_msgs (Apache-2.0).
+EDGES = {
+    "EdgeCost": "uint16 edgeid\nfloat32 cost",
+    "DynamicEdges_Request": "uint16[] closed_edges\nuint16[] opened_edges\nEdgeCost[] adjust_edges",
+    "DynamicEdges_Response": "bool success",
+}
+
 
 class Messages:
     def __init__(self, package):
         """`package` is a folder with .msg files, beside the messages of ROS 2 itself."""
         self.store = get_typestore(Stores.ROS2_JAZZY)
         texts = {f"rmf_fleet_msgs/msg/{name}": text for name, text in FLEETS.items()}
+        texts |= {f"nav2_msgs/msg/{name}": text for name, text in EDGES.items()}
         texts |= {f"{package.name}/msg/{file.stem}": file.read_text() for file in sorted(package.glob("msg/*.msg"))}
         found = {}
         for name, text in texts.items():
@@ -45,6 +53,14 @@ class Messages:
             package, _, message = name.split("/")
             self.made[name] = make_idl_struct(f"{message}_", f"{package}.msg.dds_.{message}_", fields)
         return self.made[name]
+
+    def service(self, package, name):
+        """The types of a request and of its answer, as rmw_cyclonedds_cpp has them on the wire: before the fields are the client and the number of
+        its request, which the answer repeats."""
+        header = {"client": types.uint64, "number": types.int64}
+        fields = {part: {field: self.type_of(definition) for field, definition in self.fields(f"{package}/msg/{name}_{part}").items()}
+                  for part in ("Request", "Response")}
+        return [make_idl_struct(f"{name}_{part}_", f"{package}.srv.dds_.{name}_{part}_", header | fields[part]) for part in fields]
 
     def type_of(self, definition):
         node, of = definition
