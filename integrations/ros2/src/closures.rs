@@ -23,8 +23,16 @@ pub struct Closures {
     /// How long a robot stands before it closes edges \[s\].
     stands: f64,
     robots: Vec<Stand>,
-    /// The poses of those that close edges, and what follows for each robot: that is computed when the poses change.
-    computed: Option<(Vec<Option<PlannedPose>>, Vec<Result<BTreeSet<u16>, Refusal>>)>,
+    /// It is computed when poses change.
+    computed: Option<Computed>,
+}
+
+/// The edges that are closed for each robot.
+#[derive(Clone, Debug)]
+struct Computed {
+    /// Where those stand that close edges.
+    poses: Vec<Option<PlannedPose>>,
+    edges: Vec<Result<BTreeSet<u16>, Refusal>>,
 }
 
 impl Closures {
@@ -54,13 +62,13 @@ impl Closures {
         };
         let poses: Vec<Option<PlannedPose>> = self.robots.iter().map(closing).collect();
         // The times of the messages make no difference.
-        let same = |(known, _): &(Vec<Option<PlannedPose>>, _)| {
+        let same = |computed: &Computed| {
             let place = |pose: &Option<PlannedPose>| pose.map(|pose| (pose.position, pose.yaw));
-            known.iter().map(place).eq(poses.iter().map(place))
+            computed.poses.iter().map(place).eq(poses.iter().map(place))
         };
         let computed = self.computed.take().filter(same);
         let graph = &self.graph;
-        let (_, found) = self.computed.insert(computed.unwrap_or_else(|| {
+        let Computed { edges, .. } = self.computed.insert(computed.unwrap_or_else(|| {
             let blocked = |(driver, robot): (usize, &RobotConfig)| {
                 // A robot does not close the edges that it stands on for itself.
                 let others = robots.iter().zip(&poses).enumerate().filter(|&(other, _)| other != driver);
@@ -71,9 +79,9 @@ impl Closures {
                     None => Ok(BTreeSet::new()),
                 }
             };
-            let found = robots.iter().enumerate().map(blocked).collect();
-            (poses, found)
+            let edges = robots.iter().enumerate().map(blocked).collect();
+            Computed { poses, edges }
         }));
-        found
+        edges
     }
 }

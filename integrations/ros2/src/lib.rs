@@ -3,6 +3,7 @@
 mod answer;
 mod closures;
 mod config;
+mod connections;
 mod edge_requests;
 mod markers;
 pub mod messages;

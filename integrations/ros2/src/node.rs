@@ -1,13 +1,14 @@
 //! The node: topics in and out.
 
+use crate::connections::{name, reliable};
 use crate::messages::{Clock, FleetState, MarkerArray, PathMessage, Time};
 use crate::report::{AuthoritiesReport, ConflictsReport};
 use crate::route_servers::RouteServers;
 use crate::{Answer, Closures, Config, RouteGraph, Watch};
 use ros2_client::dds::rustdds::mio1::{Events, Interest, Poll, Token};
-use ros2_client::qos::{History, WhenFull};
+use ros2_client::qos::History;
 use ros2_client::{
-    Context, ContextOptions, MessageTypeName, Name, Node, NodeName, NodeOptions, Publisher, QosProfile, ServiceMapping,
+    Context, ContextOptions, MessageTypeName, Node, NodeName, NodeOptions, Publisher, QosProfile, ServiceMapping,
     Subscription,
 };
 use std::error::Error;
@@ -33,16 +34,6 @@ pub struct PcrNode {
     authorities: Publisher<AuthoritiesReport>,
     markers: Publisher<MarkerArray>,
     _node: Node,
-}
-
-pub(crate) fn name(of: &str) -> Result<Name, Failure> {
-    // The topics of a configuration are absolute, with or without the slash.
-    Name::parse(&format!("/{}", of.trim_start_matches('/'))).map_err(|error| format!("name \"{of}\": {error:?}").into())
-}
-
-/// Paths and what is published are reliable.
-pub(crate) fn reliable(depth: usize) -> QosProfile {
-    QosProfile::publisher_default().reliability_reliable(WhenFull::DEFAULT).history(History::KeepLast { depth })
 }
 
 impl PcrNode {

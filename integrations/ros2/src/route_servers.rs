@@ -1,9 +1,10 @@
 //! Clients of the route servers: requests out, answers in.
 
+use crate::Config;
+use crate::connections::{name, reliable};
 use crate::edge_requests::EdgeRequests;
 use crate::messages::{DynamicEdgesRequest, DynamicEdgesResponse};
 use crate::refusal::Refusal;
-use crate::{Config, node};
 use ros2_client::dds::rustdds::mio1::{Interest, Registry, Token};
 use ros2_client::{Client, Node, RmwRequestId, ServiceMapping, ServiceTypeName};
 use std::collections::BTreeSet;
@@ -33,9 +34,9 @@ impl RouteServers {
         let named = config.robots.iter().enumerate();
         let named = named.filter_map(|(robot, found)| Some((robot, found.route_server.clone()?)));
         let server = |(robot, service): (usize, String)| -> Result<RouteServer, Box<dyn Error>> {
-            let (name, kind) = (node::name(&service)?, ServiceTypeName::new("nav2_msgs", "DynamicEdges"));
-            let qos = node::reliable(10);
-            let client = node.create_client(mapping, &name, &kind, qos.clone(), qos)?;
+            let kind = ServiceTypeName::new("nav2_msgs", "DynamicEdges");
+            let qos = reliable(10);
+            let client = node.create_client(mapping, &name(&service)?, &kind, qos.clone(), qos)?;
             Ok(RouteServer {
                 robot,
                 service,

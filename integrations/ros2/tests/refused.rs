@@ -224,15 +224,30 @@ fn configurations() {
         ),
         (", \"margin\": 0 }]", " }]", "missing field `margin`"),
         ("\"margin\": 0 }]", "\"margin\": 0, \"colour\": 1 }]", "unknown field `colour`"),
+        ("\"margin\": 0 }]", "\"margin\": 0, \"route_server\": \"/b/edges\" }]", "need one another"),
+        ("\"margin\": 0 }]", "\"margin\": 0, \"route_server\": \"\" }]", "need one another"),
+        ("\"max_age\": 2", "\"max_age\": 2, \"route_graph\": { \"file\": \"g\", \"stands\": 1 }", "need one another"),
     ] {
         assert!(good.contains(from), "{from}");
         let error = Config::from_json(&good.replacen(from, to, 1)).expect_err(problem).to_string();
         assert!(error.contains(problem), "{error}");
     }
+    let with_graph = |stands: &str, server: &str| {
+        let graph = format!(r#""max_age": 2, "route_graph": {{ "file": "g", "stands": {stands} }}"#);
+        let server = format!(r#""margin": 0, "route_server": "{server}" }}]"#);
+        Config::from_json(&good.replacen(r#""max_age": 2"#, &graph, 1).replacen(r#""margin": 0 }]"#, &server, 1))
+    };
+    assert_eq!(with_graph("0", "/b/edges").expect("a graph").route_graph.expect("it").stands, 0.0);
+    let problem = with_graph("-1", "/b/edges").expect_err("no time").to_string();
+    assert_eq!(problem, "\"route_graph\": \"stands\" is not a number in range");
+    assert_eq!(with_graph("1", "").expect_err("no name").to_string(), "robot \"b\": \"route_server\" is empty");
+    let both = good.replace(r#""margin": 0 }"#, r#""margin": 0, "route_server": "/edges" }"#);
+    let both = both.replacen(r#""max_age": 2"#, r#""max_age": 2, "route_graph": { "file": "g", "stands": 1 }"#, 1);
+    assert_eq!(Config::from_json(&both).expect_err("one server").to_string(), "two robots have \"/edges\"");
     let readme = include_str!("../README.md");
-    let (_, example) = readme.split_once("```json\n").expect("an example");
-    let (example, _) = example.split_once("```").expect("its end");
-    assert_eq!(Config::from_json(example).expect("the example of the README").robots.len(), 3);
+    let examples: Vec<&str> = readme.split("```json\n").skip(1).filter_map(|text| text.split("```").next()).collect();
+    let robots = examples.iter().map(|text| Config::from_json(text).expect("an example of the README").robots.len());
+    assert_eq!(robots.collect::<Vec<_>>(), [3, 2]);
     let one = r#"{ "frame": "map", "max_age": 2, "robots": [] }"#;
     assert_eq!(Config::from_json(one).expect_err("none").to_string(), "there are not two robots");
 }
