@@ -1,7 +1,8 @@
 #!/usr/bin/env bash
 # Installs the library into a scratch folder, for the host and for a Cortex-M4F, compiles the programs of this folder against it, runs
 # them, on the target in QEMU, and compares what they print with their .out files. That an image links proves that it cannot panic.
-# Then the wrapper for C++ and the example for CMake, on the host, and the sample for Zephyr, with a stand-in for Zephyr.
+# Then the wrapper for C++ and the example for CMake, on the host, where FetchContent takes what is committed, and the sample for Zephyr,
+# with a stand-in for Zephyr.
 #   --accept   writes the .out files anew
 set -euo pipefail
 cd "$(dirname "$0")"
@@ -49,11 +50,17 @@ if "$build/trucks" >"$build/host.out" || ! grep PCR_STATUS_NEEDS_OUTLINES "$buil
 fi
 c++ -std=c++17 "${warnings[@]}" $(flags host --cflags) bindings/c/c/wrapper.cpp $(flags host --libs) -o "$build/wrapper"
 "$build/wrapper"
-cmake -S bindings/c/c/cmake -B "$build/cmake" -DCMAKE_PREFIX_PATH="$build/host" >"$build/cmake.log" || { cat "$build/cmake.log" >&2; exit 1; }
-cmake --build "$build/cmake" >"$build/cmake.log" || { cat "$build/cmake.log" >&2; exit 1; }
-"$build/cmake/passing" | diff bindings/c/c/passing.out -
-"$build/cmake/wrapper"
-echo "bindings/c: C++ and CMake"
+# by_cmake FOLDER OPTIONS...: the example for CMake, built there.
+by_cmake() {
+  cmake -S bindings/c/c/cmake -B "$1" "${@:2}" >"$build/cmake.log" 2>&1 && cmake --build "$1" >>"$build/cmake.log" 2>&1 || { cat "$build/cmake.log" >&2; exit 1; }
+  "$1/passing" | diff bindings/c/c/passing.out -
+  "$1/wrapper"
+}
+by_cmake "$build/installed" -DCMAKE_PREFIX_PATH="$build/host"
+by_cmake "$build/checkout" -DPCR_CHECKOUT="$PWD" -DPCR_TARGET_DIR="$(realpath "${CARGO_TARGET_DIR:-target}")"
+# What is committed, as somebody else would fetch it.
+by_cmake "$build/fetched" -DPCR_REPOSITORY="file://$PWD" -DPCR_REVISION="$(git rev-parse HEAD)"
+echo "bindings/c: C++, and CMake by find_package, add_subdirectory and FetchContent"
 cmake -S bindings/c/zephyr/sample -B "$build/zephyr" -DZephyr_DIR="$PWD/bindings/c/zephyr/stand-in" >"$build/cmake.log" || { cat "$build/cmake.log" >&2; exit 1; }
 cmake --build "$build/zephyr" >"$build/cmake.log" || { cat "$build/cmake.log" >&2; exit 1; }
 timeout 3600 qemu-system-arm -machine mps2-an386 -display none -monitor none -serial none \
