@@ -1,18 +1,18 @@
 #!/usr/bin/env bash
 # What a release consists of, built twice from clean clones in two folders and compared bit for bit:
 #   .ci/release.sh OUT            everything
-#   .ci/release.sh OUT PART...    some: x86_64 aarch64 wheel library playground
-# OUT gets the tool as a static binary (musl) for two machines with completions and its manual page, the Python wheel, the library for C,
-# the playground, the bill of materials (CycloneDX) and SHA256SUMS. What is not committed is not in it.
+#   .ci/release.sh OUT PART...    some: x86_64 aarch64 wheel-x86_64 wheel-aarch64 library playground report
+# OUT gets the tool as a static binary (musl) for two machines with completions and its manual page, the Python wheels for both (manylinux),
+# the library for C, the playground, the report, the bill of materials (CycloneDX) and SHA256SUMS. What is not committed is not in it.
 set -euo pipefail
 [ $# -ge 1 ] || { sed -n '2,7s/^# //p' "$0" >&2; exit 2; }
 mkdir -p "$1"
 out=$(cd "$1" && pwd)
 shift
-parts=" ${*:-x86_64 aarch64 wheel library playground} "
+parts=" ${*:-x86_64 aarch64 wheel-x86_64 wheel-aarch64 library playground report} "
 for part in $parts; do
   case $part in
-    x86_64 | aarch64 | wheel | library | playground) ;;
+    x86_64 | aarch64 | wheel-x86_64 | wheel-aarch64 | library | playground | report) ;;
     *) echo "release: no part is called $part" >&2; exit 2 ;;
   esac
 done
@@ -57,16 +57,48 @@ tool() {
   rm -r "$made/.pcr"
 }
 
-wheel() {
-  local here=$1 made=$2 python=$scratch/python name
-  name=CARGO_TARGET_$(tr 'a-z.-' 'A-Z__' <<<"$host")_RUSTFLAGS
-  if [ ! -x "$python/bin/maturin" ]; then
-    python3 -m venv "$python" >/dev/null 2>&1 || { .ci/install.sh python3-venv && python3 -m venv "$python"; }
-    "$python/bin/pip" install -q --disable-pip-version-check "maturin>=1.9,<2"
+# environment NAME PACKAGE...: an environment of Python with these packages, once; its folder.
+environment() {
+  local folder=$scratch/$1
+  if [ ! -x "$folder/bin/pip" ]; then
+    python3 -m venv "$folder" >/dev/null 2>&1 || { .ci/install.sh python3-venv >&2 && python3 -m venv "$folder" >&2; }
+    if [ $# -gt 1 ]; then "$folder/bin/pip" install -q --disable-pip-version-check "${@:2}" >&2; fi
   fi
+  echo "$folder"
+}
+
+# Linked by Zig, for the glibc of manylinux2014 and later ones, whichever this machine has.
+wheel() {
+  local here=$1 made=$2 machine=$3 target=$3-unknown-linux-gnu python name
+  name=CARGO_TARGET_$(tr 'a-z.-' 'A-Z__' <<<"$target")_RUSTFLAGS
+  python=$(environment maturin "maturin>=1.9,<2" ziglang)
   .ci/dependencies.py sbom pcr-py >"$here/pcr-py.cdx.json"
-  env "$name=$(flags "$here")" "$python/bin/maturin" build -q -m bindings/python/Cargo.toml --profile wheel --locked --out "$made" \
-    --sbom-include "$here/pcr-py.cdx.json"
+  env "$name=$(flags "$here")" PATH="$python/bin:$PATH" firmware/cross.sh "$target" -- "$python/bin/maturin" build -q --zig --target "$target" \
+    --compatibility manylinux2014 -m bindings/python/Cargo.toml --profile wheel --locked --out "$made" --sbom-include "$here/pcr-py.cdx.json"
+  try_wheel "$machine" "$made"/pcr_py-*"manylinux2014_$machine.whl"
+}
+
+# As a new user has it: no compiler in sight, and nothing from a registry. On the other machine, which is emulated, with Debian's Python.
+try_wheel() {
+  local machine=$1 wheel=$2 python program
+  program='import sys, pcr
+fleet = pcr.Fleet.read(sys.argv[1])
+assert len(fleet.regions()) == 136 and fleet.conflicts() and not fleet.plan().fleet.conflicts()
+import platform
+assert platform.machine() == sys.argv[2]'
+  if [ "$machine" = "$(uname -m)" ]; then
+    rm -rf "$scratch/clean"
+    python=$(environment clean)
+    "$python/bin/pip" install -q --disable-pip-version-check --no-index --no-deps "$wheel"
+    env -i "$python/bin/python" -I -c "$program" tests/data/paper12.json "$machine"
+  else
+    command -v "qemu-$machine" >/dev/null || .ci/install.sh qemu-user
+    if [ ! -e "$scratch/$machine" ]; then .ci/unpack.sh --needs "$machine" "$scratch/$machine" python3; fi
+    rm -rf "$scratch/site"
+    python3 -m zipfile -e "$wheel" "$scratch/site"
+    env -i "$(command -v "qemu-$machine")" -L "$scratch/$machine" "$scratch/$machine/usr/bin/python3" -I -c "import sys; sys.path.insert(0, '$scratch/site')
+$program" tests/data/paper12.json "$machine"
+  fi
 }
 
 library() {
@@ -84,6 +116,13 @@ playground() {
   bindings/web/build.py target/$target/web/pcr_web.wasm "$made/pcr-playground-$version.html" >/dev/null
 }
 
+# Its tools in versions that are named, because another one may set it otherwise.
+report() {
+  local here=$1 made=$2 python
+  python=$(environment report pypandoc_binary==1.17 typst==0.15.2)
+  "$python/bin/python" docs/theory/report/build.py "$made/pcr-report-$version.pdf"
+}
+
 # once FOLDER: a release, from a clone there.
 once() {
   local here=$scratch/$1/source made=$scratch/$1/made part
@@ -92,7 +131,8 @@ once() {
   mkdir -p "$made"
   cd "$here"
   for part in x86_64 aarch64; do if [[ $parts == *" $part "* ]]; then tool "$here" "$made" $part; fi; done
-  for part in wheel library playground; do if [[ $parts == *" $part "* ]]; then $part "$here" "$made"; fi; done
+  for part in x86_64 aarch64; do if [[ $parts == *" wheel-$part "* ]]; then wheel "$here" "$made" $part; fi; done
+  for part in library playground report; do if [[ $parts == *" $part "* ]]; then $part "$here" "$made"; fi; done
   .ci/dependencies.py sbom pcr-host >"$made/pcr-$version.cdx.json"
   (cd "$made" && find . -maxdepth 1 -type f ! -name SHA256SUMS -printf '%f\n' | sort | xargs sha256sum >SHA256SUMS)
   cd "$root"

@@ -253,7 +253,7 @@ packages() {
 
 release() {
   step "the quick parts of a release, built twice from clean clones: the same bit for bit"
-  .ci/release.sh "${CARGO_TARGET_DIR:-target}/release-parts" library playground
+  .ci/release.sh "${CARGO_TARGET_DIR:-target}/release-parts" library playground report
 }
 
 instructions() {
