@@ -446,6 +446,33 @@ class Answers(unittest.TestCase):
         ax = standing.regions()[0].plot(pcr.Fleet([]).plot())
         self.assertEqual([round(bar.get_window_extent().width / ax.bbox.width, 6) for bar in ax.patches], [1.0])
 
+    def test_pictures_have_smooth_outlines_numbers_and_units(self) -> None:
+        import matplotlib
+
+        matplotlib.use("Agg")
+        # The discs cross at a right angle at 1 m/s: the region is a circle, whose edges are far shorter than a pixel is wide.
+        ax = pcr.Fleet(CROSSING).plot(agent=1)
+        points = ax.patches[0].get_xy()
+        edges = [(a + (b - a) * part) - (2.5, 2.0) for a, b in zip(points, points[1:]) for part in (0.0, 0.5)]
+        self.assertLess(max(abs(math.hypot(*at) - 0.5) for at in edges), 2e-4)
+        self.assertEqual((ax.get_xlabel(), ax.get_ylabel()), ("time [s]", "travelled length of agent 1 [m]"))
+        self.assertEqual([text.get_text() for text in ax.texts], ["2"])
+        self.assertEqual([text.get_text() for text in ax.get_legend().get_texts()], ["2", "its motion"])
+        # The whole legend is in the figure, and the outline ends with the axes.
+        ax.figure.canvas.draw()
+        self.assertLessEqual(ax.get_legend().get_window_extent().x1, ax.figure.bbox.x1)
+        # Squares, side by side from the first contact on: what is blocked begins at once with all of its width, and it has corners.
+        square = {"polygon": [{"ahead": x, "left": y} for x, y in ((0.2, 0.2), (-0.2, 0.2), (-0.2, -0.2), (0.2, -0.2))]}
+        squares = pcr.Fleet([{**{name: value for name, value in agent.items() if name != "radius"}, "footprint": square} for agent in CROSSING])
+        region = squares.regions()[0]
+        ax = region.plot(pcr.Fleet([]).plot())
+        points = ax.patches[0].get_xy()
+        for at, length in ((region.t[0], region.l[0]), (region.t[0], region.l[1]), (region.t[1], region.l[0]), (region.t[1], region.l[1])):
+            self.assertLess(min(math.hypot(t - at, l - length) for t, l in points), 1e-6)
+        ax = squares.plot()
+        self.assertEqual([len(patch.get_xy()) for patch in ax.patches], [5, 5])
+        self.assertEqual((ax.get_xlabel(), ax.get_ylabel(), [text.get_text() for text in ax.texts]), ("x [m]", "y [m]", ["1", "2"]))
+
     def test_other_threads_run_meanwhile(self) -> None:
         agents = json.loads(TWELVE.read_text())["agents"]
         fleet = pcr.Fleet([dict(agent, id=100 * k + agent["id"]) for k in range(8) for agent in agents])

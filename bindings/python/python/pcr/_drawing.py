@@ -15,18 +15,41 @@ if TYPE_CHECKING:
 #: Points of a circle, and of a rounded corner.
 ROUND = 32
 
+#: Points between the end of a region and what is blocked next to it.
+TIP = 8
+
 Corner = tuple[float, float]
 #: A time, and the lengths that are blocked then.
 Column = tuple[float, Sequence[Span]]
 
 
-def chains(columns: Sequence[Column], t: Span, is_open: tuple[bool, bool]) -> list[list[Corner]]:
+#: A time, and what is blocked then, from and to.
+Slice = tuple[float, float, float]
+
+
+def tip(at: float, near: Slice, beyond: Slice) -> list[Slice]:
+    """What a picture shows between the end of a region at the time ``at`` and the first two slices from there: their width is taken for a power of
+    the time from the end, a root where discs begin to touch, linear where corners do, constant where sides do, and their middle for linear."""
+    (t, lo, hi), (t_beyond, lo_beyond, hi_beyond) = near, beyond
+    width, wider = hi - lo, hi_beyond - lo_beyond
+    power = math.log(wider / width) / math.log((t_beyond - at) / (t - at)) if 0.0 < width < wider else 0.0
+    slope = (lo_beyond + hi_beyond - lo - hi) / 2 / (t_beyond - t)
+    found = []
+    for part in ((k / TIP) ** 2 for k in range(TIP)):
+        time = at + (t - at) * part
+        middle, half = (lo + hi) / 2 + slope * (time - t), width / 2 * part ** min(power, 1.0)
+        found.append((time, middle - half, middle + half))
+    return found
+
+
+def chains(columns: Sequence[Column], t: Span, is_open: tuple[bool, bool], *, tips: bool = False) -> list[list[Corner]]:
     """The polygons, in time and length, around what is blocked at evenly spaced times between the ends of a region: a stretch goes on as long as
-    it overlaps just one of the next time, and no other does. ``is_open`` tells whether the other agent stands before and after."""
-    done: list[list[tuple[float, float, float]]] = []
-    open_: list[list[tuple[float, float, float]]] = []
+    it overlaps just one of the next time, and no other does. ``is_open`` tells whether the other agent stands before and after. With ``tips`` the
+    ends have the form that the next slices have, for pictures; without, they are chords."""
+    done: list[list[Slice]] = []
+    open_: list[list[Slice]] = []
     for time, stretches in columns:
-        continued: list[list[tuple[float, float, float]]] = []
+        continued: list[list[Slice]] = []
         for lo, hi in stretches:
             before = [chain for chain in open_ if chain[-1][1] <= hi and lo <= chain[-1][2]]
             after = [other for other in stretches if before and before[0][-1][1] <= other[1] and other[0] <= before[0][-1][2]]
@@ -40,15 +63,22 @@ def chains(columns: Sequence[Column], t: Span, is_open: tuple[bool, bool]) -> li
         open_ = continued
     polygons = []
     for chain in done + open_:
-        points = [(time, lo) for time, lo, _ in chain] + [(time, hi) for time, _, hi in reversed(chain)]
-        first, last = chain[0], chain[-1]
         # Its ends are not among the times that were asked for. It tapers off there, unless what is blocked stays so.
-        if last[0] == columns[-1][0]:
-            points[len(chain):len(chain)] = [(t[1], length) for length in (last[1:] if is_open[1] else ((last[1] + last[2]) / 2,))]
-        if first[0] == columns[0][0]:
-            points += [(t[0], length) for length in (first[:0:-1] if is_open[0] else ((first[1] + first[2]) / 2,))]
-        polygons.append(points)
+        head, end = (_end(t[0], chain[:2], is_open[0], tips) if chain[0][0] == columns[0][0] else [],
+                     _end(t[1], chain[:-3:-1], is_open[1], tips) if chain[-1][0] == columns[-1][0] else [])
+        chain = [*head, *chain, *reversed(end)]
+        points = [(time, lo) for time, lo, _ in chain] + [(time, hi) for time, _, hi in reversed(chain)]
+        # Where both sides meet, a corner is one point.
+        polygons.append([point for place, point in enumerate(points) if point != points[place - 1]])
     return polygons
+
+
+def _end(at: float, slices: Sequence[Slice], stays: bool, tips: bool) -> list[Slice]:
+    """What is between the end of a region at the time ``at`` and its slices next to it, the end first."""
+    lo, hi = slices[0][1:]
+    if stays:
+        return [(at, lo, hi)]
+    return tip(at, *slices) if tips and len(slices) == 2 else [(at, (lo + hi) / 2, (lo + hi) / 2)]
 
 
 def body(agent: dict[str, Any], pose: Sequence[float]) -> list[Corner]:
@@ -103,7 +133,10 @@ def collision_map(fleet: Fleet, agent: int, axes: Any, times: Sequence[float]) -
                 axes.axhspan(lo, hi, **style)
                 style.pop("label", None)
             continue
-        for points in chains(columns, (t[0], t[1]), (region["open_start"], region["open_end"])):
+        widest = max(((hi - lo, time, lo + hi) for time, stretches in columns for lo, hi in stretches), default=None)
+        if widest is not None:
+            axes.annotate(names[other], (widest[1], widest[2] / 2), ha="center", va="center", fontsize="small", annotation_clip=True)
+        for points in chains(columns, (t[0], t[1]), (region["open_start"], region["open_end"]), tips=True):
             axes.fill([x for x, _ in points], [y for _, y in points], **style)
             style.pop("label", None)
         # What the other agent blocks while it stands is blocked before and after, too.
@@ -113,5 +146,7 @@ def collision_map(fleet: Fleet, agent: int, axes: Any, times: Sequence[float]) -
                     axes.fill_between([t[at], end], lo, hi, **style)
     axes.plot(times, [fleet.places(time)[places[agent]][3] for time in times], color="black", label="its motion")
     axes.set(xlabel="time [s]", ylabel=f"travelled length of agent {names[agent]} [m]", xlim=(times[0], times[-1]))
+    if (length := fleet.agents[places[agent]]["length"]) > 0.0:
+        axes.set_ylim(0.0, length)
     axes.legend(title="blocked by agent", loc="upper left", bbox_to_anchor=(1.0, 1.0))
     return axes

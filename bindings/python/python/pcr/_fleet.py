@@ -255,7 +255,8 @@ class Fleet:
         own = None if agent is None else whole("agent", agent)
         if own is not None and own not in [a["id"] for a in self.agents]:
             raise Error(f"no agent {own}")
-        axes = plt.subplots()[1] if ax is None else ax
+        # The legend is beside the axes: a figure of one's own has room for it.
+        axes = plt.subplots(layout="constrained")[1] if ax is None else ax
         first, last = self._span()
         times = [first + (last - first) / count * k for k in range(count + 1)]
         return _drawing.paths(self, axes, times) if own is None else _drawing.collision_map(self, own, axes, times)

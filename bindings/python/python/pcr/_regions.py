@@ -62,19 +62,22 @@ class Region(_Ranges):
         are chords, which leave out slivers of it. None where the other agent stands all the time, because it has no end then."""
         return [] if self.t[0] == self.t[1] else self._polygons(self.outline(n))
 
-    def _polygons(self, outline: list[tuple[float, float, float]]) -> list[list[tuple[float, float]]]:
+    def _polygons(self, outline: list[tuple[float, float, float]], *, tips: bool = False) -> list[list[tuple[float, float]]]:
         columns: dict[float, list[Span]] = {}
         for t, lo, hi in outline:
             columns.setdefault(t, []).append((lo, hi))
-        return chains(list(columns.items()), self.t, (self.open_start, self.open_end))
+        return chains(list(columns.items()), self.t, (self.open_start, self.open_end), tips=tips)
 
-    def plot(self, ax: Any, *, columns: SupportsIndex = 60, **style: Any) -> Any:
-        """Draws it on matplotlib's ``ax``, which it returns: time to the right, length upwards. ``style`` goes to ``ax.fill``."""
+    def plot(self, ax: Any, *, columns: SupportsIndex = 400, **style: Any) -> Any:
+        """Draws it on matplotlib's ``ax``, which it returns: time [s] to the right, length [m] upwards, through what it covers at so many times
+        (``columns``); between its ends and the first of them it has the form of what is next to them. ``style`` goes to ``ax.fill``."""
+        outline = self.outline(columns)
         if self.t[0] == self.t[1]:
             # The other stands all the time.
-            for lo, hi in sorted({(lo, hi) for _, lo, hi in self.outline(columns)}):
+            for lo, hi in sorted({(lo, hi) for _, lo, hi in outline}):
                 ax.axhspan(lo, hi, **style)
-        for points in self.polygons(columns):
+            return ax
+        for points in self._polygons(outline, tips=True):
             ax.fill([t for t, _ in points], [l for _, l in points], **style)
         return ax
 
