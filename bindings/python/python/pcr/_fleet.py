@@ -246,7 +246,8 @@ class Fleet:
         return self._fleet.holds(spans)
 
     def plot(self, ax: Any = None, *, agent: Optional[SupportsIndex] = None, columns: SupportsIndex = 400) -> Any:
-        """Draws the paths with the agents at their starts, or with ``agent`` its collision map, on matplotlib's ``ax``; returns it."""
+        """Draws the paths with the agents at their starts, or with ``agent`` its collision map, on matplotlib's ``ax``; returns it.
+        The legend is beside the axes: make the figure of your own ``ax`` with ``layout="constrained"``."""
         import matplotlib.pyplot as plt  # type: ignore[import-not-found, import-untyped, unused-ignore]
 
         count = whole("columns", columns, SLICES)
