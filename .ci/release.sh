@@ -75,7 +75,7 @@ wheel() {
   .ci/dependencies.py sbom pcr-py >"$here/pcr-py.cdx.json"
   env "$name=$(flags "$here")" PATH="$python/bin:$PATH" firmware/cross.sh "$target" -- "$python/bin/maturin" build -q --zig --target "$target" \
     --compatibility manylinux2014 -m bindings/python/Cargo.toml --profile wheel --locked --out "$made" --sbom-include "$here/pcr-py.cdx.json"
-  try_wheel "$machine" "$made"/pcr_py-*"manylinux2014_$machine.whl"
+  try_wheel "$machine" "$made"/pcr_py-*"_$machine.whl"
 }
 
 # As a new user has it: no compiler in sight, and nothing from a registry. On the other machine, which is emulated, with Debian's Python.
