@@ -13,10 +13,10 @@ FOR_USERS = 150_000
 
 
 def committed(pattern):
-    """All files of this pattern: those that are committed, and those that will be."""
+    """All files of this pattern, where they are: those that are committed, and those that will be."""
     listed = subprocess.run(["git", "ls-files", "-z", "--cached", "--others", "--exclude-standard", pattern],
                             cwd=TOP, check=True, stdout=subprocess.PIPE, text=True).stdout
-    return sorted(path for name in listed.split("\0") if name and (path := TOP / name).is_file())
+    return sorted(path for name in listed.split("\0") if name and (path := TOP / name).is_file() and not path.is_symlink())
 
 
 def without_code(text):

@@ -215,7 +215,7 @@ engines() {
 # the same as in the repository, where the data of some is.
 packages() {
   step "packages, outside of the workspace"
-  local target crates=() crate
+  local target root=$PWD crates=() crate
   mkdir -p "${CARGO_TARGET_DIR:-target}"
   target=$(realpath "${CARGO_TARGET_DIR:-target}")
   for crate in $(sed -n '/^members/,/^\]/s/^ *"\(.*\)",/\1/p' Cargo.toml); do
@@ -230,6 +230,10 @@ packages() {
     archive=$(ls "$target/package/$crate"-[0-9]*.crate)
     for file in README.md LICENSE-MIT LICENSE-APACHE Cargo.toml; do
       tar -tf "$archive" | grep "/$file\$" >/dev/null || { echo "$crate has no $file" >&2; return 1; }
+    done
+    # What the documentation of the interface cites.
+    for file in $(tar -xOf "$archive" --wildcards '*.rs' | grep -oE 'docs/theory/[a-z-]+\.md' | sort -u); do
+      case $crate in pcr-core | pcr-fixed) tar -tf "$archive" | grep "/$file\$" >/dev/null || { echo "$crate cites $file" >&2; return 1; } ;; esac
     done
     # As new files: they are dated alike in all archives, and cargo would take them for those of the last time.
     tar -C "$target/unpacked" -xmf "$archive"
@@ -248,6 +252,10 @@ packages() {
     cargo check -q --workspace --profile "$profile" --all-targets --features pcr-core/std
     # What is recorded for the proofs is compared in the repository, where the proofs are.
     cargo test -q -p pcr-core -p pcr-fixed -p pcr-certify --profile "$profile" --lib --examples --features pcr-core/std -- --skip recorded::
+    local machine
+    for machine in thumbv6m-none-eabi thumbv7em-none-eabihf riscv32imc-unknown-none-elf; do
+      "$root/firmware/cross.sh" "$machine" check -q --release --locked -p pcr-core -p pcr-fixed
+    done
   )
 }
 

@@ -16,7 +16,7 @@ impl<S: Scalar> Ecm<S, Vec<EcmEntry>, Vec<Piece<S>>> {
     ///
     /// Cost: at most twice that of [`Ecm::build`], because a table that does not fit is computed again with twice the
     /// room. The first attempt has room for 16 regions and 32 pieces for each agent, more than the fleets of
-    /// `docs/maintain/evaluation.md` need.
+    /// `docs/maintain/evaluation.md` (in the repository) need.
     ///
     /// # Errors
     /// [`CapacityError::Pair`] and [`CapacityError::Agents`], which more storage does not help; [`CapacityError::Regions`] and [`CapacityError::Pieces`] if

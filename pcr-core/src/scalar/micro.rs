@@ -6,7 +6,7 @@
 //! There is no such method for sines; those use the polynomials of `f32`.
 //!
 //! On a core with an FPU `f32` is both faster and more accurate, because its root is one instruction and its arctangent
-//! one polynomial; `docs/maintain/firmware.md` has the figures. This type is for programs that use micromath already and need a
+//! one polynomial; `docs/maintain/firmware.md` of the repository has the figures. This type is for programs that use micromath already and need a
 //! guaranteed accuracy.
 
 use super::trig::Trig;

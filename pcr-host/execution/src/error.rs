@@ -29,13 +29,6 @@ pub enum ExecutionError {
     },
     /// These vehicles touch where they start.
     Touching([String; 2]),
-    /// An outline drives backward on an edge, which missions do not do yet.
-    Backward {
-        /// The id of the vehicle.
-        vehicle: String,
-        /// The id of the edge.
-        edge: String,
-    },
     /// The run had no missions.
     NoMissions,
     /// What this vehicle did is no motion along its path.
@@ -65,10 +58,6 @@ impl fmt::Display for ExecutionError {
             Self::Changes(method) => write!(f, "{method} are compared on sites that do not change"),
             Self::NoSuchNode { node, count } => write!(f, "node {node} is none of the {count} of the layout"),
             Self::Touching([one, other]) => write!(f, "vehicles {one} and {other} touch where they start"),
-            Self::Backward { vehicle, edge } => write!(
-                f,
-                "vehicle {vehicle} drives backward on edge {edge}, which is not possible with an outline yet; give it a radius"
-            ),
             Self::NoMissions => f.write_str("there are no missions"),
             Self::Driven(vehicle, problem) => write!(f, "vehicle {vehicle}: {problem}"),
             Self::Certificate(refused) => refused.fmt(f),

@@ -37,6 +37,8 @@
 //!   order of the file, and the texts are their labels.
 //! - `"gear": "reverse"` in a line or arc: the vehicle drives backward. It comes to rest where the gear changes, and does not turn there. An
 //!   arc turns it by `sweep`, whatever the gear. Files with it have `"version": 2`.
+//! - `"facing": 1.57` instead of it is the angle from the direction of travel to the heading \[rad\], of vehicles that travel sideways. Files
+//!   with it have `"version": 4`.
 //! - `"format": "pcr-scenario"` and `"version": 1` are what files of the tool begin with; they may be left out.
 //!
 //! Whatever is out of range, missing, unknown, repeated or not finite is refused by a [`ScenarioError`] that names the

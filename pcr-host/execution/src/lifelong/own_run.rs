@@ -143,10 +143,6 @@ impl LifelongState {
         let starts: Vec<usize> =
             vehicles.iter().zip(&layer_of).map(|(it, layer)| layer * site.places() + it.start).collect();
         for (robot, &start) in starts.iter().enumerate() {
-            if let Some(edge) = site.backward(layer_of[robot]) {
-                let edge = imported.layout.edges[edge].id.to_string();
-                return Err(ExecutionError::Backward { vehicle: id(robot).clone(), edge });
-            }
             if let Some(other) = starts[..robot].iter().position(|&other| site.collide(other, start)) {
                 return Err(ExecutionError::Touching([other, robot].map(|robot| id(robot).clone())));
             }

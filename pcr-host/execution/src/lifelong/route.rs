@@ -68,13 +68,18 @@ impl Route {
             for place in turning.into_iter().chain([next]) {
                 let atom = &site.atoms[place];
                 let turn = heading.zip(atom.headings).map_or(0.0, |(last, next)| wrapped(next[0] - last));
-                let stops = before.len() > 1 && place != next || (turning.is_none() && goals.contains(&k));
+                // Where the way goes on in another direction, and the robot does not turn, it stops.
+                let shifts = atoms.last().is_some_and(|&last| site.changes_facing(last, place));
+                let stops = before.len() > 1 && place != next || (turning.is_none() && goals.contains(&k)) || shifts;
                 if f64::abs(turn) > STRAIGHT && !site.is_outline(atom.layer) {
                     corners.push(RouteCorner { at: length, turn: abilities.turn(turn) });
                     time += abilities.turn(turn);
                 }
                 if !atoms.is_empty() && (f64::abs(turn) > STRAIGHT || stops) {
                     time += abilities.stop();
+                }
+                if shifts {
+                    corners.push(RouteCorner { at: length, turn: 0.0 });
                 }
                 corners.extend(within(site, atom, length, abilities));
                 times.push(time);

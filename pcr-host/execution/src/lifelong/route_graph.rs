@@ -220,10 +220,10 @@ impl RouteGraph {
         !self.layers[layer].body.is_disc()
     }
 
-    /// An edge of the layout on which the outlines of a layer drive backward.
-    pub(super) fn backward(&self, layer: usize) -> Option<usize> {
-        let is_backward = |atom: &&RouteElement| atom.layer == layer && atom.facing != 0.0;
-        self.atoms.iter().filter(is_backward).find_map(|atom| atom.edge)
+    /// Whether a robot has another angle to its direction of travel on the second of two edges that follow one another.
+    pub(super) fn changes_facing(&self, before: usize, after: usize) -> bool {
+        let [before, after] = [before, after].map(|atom| &self.atoms[atom]);
+        before.edge.is_some() && after.edge.is_some() && before.facing != after.facing
     }
 
     /// Number of nodes of the layout, each of which is in all layers.

@@ -39,6 +39,8 @@ struct DrivenPath {
     start: Option<[f64; 3]>,
     at: [f64; 2],
     heading: f64,
+    /// Angle from the direction of travel to the heading of the robot \[rad\].
+    facing: f64,
     /// Pose before the last segment.
     before: ([f64; 2], f64),
     driven: f64,
@@ -80,6 +82,15 @@ impl DrivenPath {
             self.push(PathSegment::Turn { sweep }, 0.0, true);
         } else if sweep.abs() > NO_TURN {
             self.push(PathSegment::Kink { sweep }, 0.0, false);
+        }
+    }
+
+    /// Goes on in a direction \[rad\] with this angle from it to the heading of the robot, which stands and does not turn where that changes.
+    fn set_facing(&mut self, at: [f64; 2], direction: f64, facing: f64) {
+        if self.facing != facing {
+            self.face(if self.start.is_none() { at } else { self.at }, direction + facing - self.facing);
+            self.push(PathSegment::Facing { before: self.facing, after: facing }, 0.0, false);
+            self.facing = facing;
         }
     }
 
@@ -173,15 +184,20 @@ fn add(path: &mut DrivenPath, site: &RouteGraph, atom: usize, mut left: f64) {
             [point.x, point.y]
         };
         let signed = |angle: f64, turn: TurnSide| if turn == TurnSide::Left { angle } else { -angle };
+        // At a node the heading of a turn is that of the robot.
+        let heading = segment.heading_at(0.0).0;
+        if element.edge.is_some() {
+            path.set_facing(point(0.0), heading, element.facing);
+        }
         match segment.curve() {
             Curve::Line => path.line(point(0.0), point(keep), keep),
             Curve::Arc { radius, turn } => {
-                path.face(point(0.0), segment.heading_at(0.0).0);
+                path.face(point(0.0), heading);
                 path.push(PathSegment::Arc { radius, sweep: signed(keep / radius, turn) }, keep, false);
             }
             Curve::Pivot { lever, turn } => {
-                path.begin(point(0.0), segment.heading_at(0.0).0);
-                let missing = wrapped(segment.heading_at(0.0).0 - path.heading);
+                path.begin(point(0.0), heading);
+                let missing = wrapped(heading + element.facing - path.heading - path.facing);
                 let sweep = signed(keep / lever, turn) + missing;
                 let is_passed = sweep.abs() <= STRAIGHT;
                 path.push(

@@ -1,8 +1,9 @@
 //! Missions of files on small sites.
 
 use super::*;
-use pcr_formats::import::{ImportOptions, InputFormat, Warnings, roads};
+use pcr_formats::import::{Facing, ImportOptions, InputFormat, Warnings, roads};
 use pcr_formats::missions::{MissionSource, RecordKind};
+use pcr_formats::scenario::{Agent, PathSegment, PlacedSegment, REVERSE};
 use pcr_formats::splitmix64::SplitMix64;
 use pcr_planning::check::CheckReport;
 
@@ -91,6 +92,54 @@ fn stops_are_visited_one_after_the_other_by_the_nearest_vehicle() {
     assert!(mission.start >= Some(20.0) && times.is_sorted() && times.len() == 4, "{mission:?}");
     // 10 m at 1 m/s and the ramps, with a quarter turn at the second one.
     assert!(times[1] - times[0] >= 10.0 && times[3] - times[2] >= 13.0, "{mission:?}");
+}
+
+/// They were refused.
+#[test]
+fn vehicles_leave_their_bays_backward_and_travel_sideways() {
+    for (facing, angle) in [(Facing::Backward, REVERSE), (Facing::sideways(1.0), 1.0)] {
+        let mut imported = square();
+        for edge in imported.layout.edges.iter_mut().filter(|edge| edge.ends[0] >= 4) {
+            edge.facing = [facing; 2];
+        }
+        let text = r#"{"kind": "vehicle", "id": "truck", "start": 4, "length": 1.6, "width": 0.8, "speed": 0.5}
+            {"kind": "vehicle", "id": "other", "start": 6, "length": 1.2, "width": 0.6}
+            {"kind": "vehicle", "id": "disc", "start": 5, "radius": 0.4}
+            {"id": "a", "vehicle": "truck", "to": 6, "via": [0]}
+            {"id": "b", "vehicle": "other", "to": 4}
+            {"id": "c", "vehicle": "disc", "to": 7}
+            {"id": "d", "vehicle": "truck", "to": 5}"#;
+        let report = report(&imported, text);
+        assert!(report.is_sound() && report.done == 4, "{report:?}");
+        let source = MissionSource { text, kind: RecordKind::Mission };
+        let fleet = FleetMissions::read(&[source], &imported.layout, &imported.vehicle).expect("missions");
+        let (_, scenario) = MissionsReport::run(&imported, &fleet, &|_, _| {}).expect("a run");
+        let agents = scenario.expect("a run that is a scenario").agents;
+        let facings = |agent: &Agent| {
+            let facing = |segment: &PathSegment| match *segment {
+                PathSegment::Facing { after, .. } => Some(after),
+                _ => None,
+            };
+            agent.path.iter().filter_map(facing).collect::<Vec<_>>()
+        };
+        // Out of a bay, and ahead from the aisle on.
+        for (agent, least) in [(0, 2), (1, 1), (2, 0)] {
+            let facings = facings(&agents[agent]);
+            assert!(facings.chunks(2).all(|pair| pair == [angle, 0.0]), "{facings:?}");
+            assert!(facings.len() >= 2 * least && (least > 0 || facings.is_empty()), "{facings:?}");
+        }
+        // The path of the scenario leads to the bay where the truck ends.
+        let placed = agents[0].path.iter().fold(
+            PlacedSegment {
+                start: [agents[0].start[0], agents[0].start[1]],
+                heading: agents[0].start[2],
+                shape: PathSegment::Line { length: 0.0 },
+            },
+            |last, &shape| PlacedSegment { start: last.end(), heading: last.heading_at_end(), shape },
+        );
+        let [x, y] = placed.end();
+        assert!(f64::hypot(x - 13.0, y) < 1e-6, "{x} {y}");
+    }
 }
 
 #[test]

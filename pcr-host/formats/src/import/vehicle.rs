@@ -64,7 +64,7 @@ pub struct FacingAngle(u64);
 
 impl Facing {
     /// At an angle from the direction of travel to the heading \[rad\].
-    pub(super) fn sideways(angle: f64) -> Self {
+    pub fn sideways(angle: f64) -> Self {
         Self::Sideways(FacingAngle(angle.to_bits()))
     }
 

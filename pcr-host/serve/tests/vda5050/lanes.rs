@@ -35,6 +35,33 @@ fn notes_of_the_journal_that_cannot_be_read_are_an_error() {
     }
 }
 
+/// As Isaac Mission Dispatch writes its orders: of whom they are, only the topic says.
+#[test]
+fn orders_that_name_no_vehicle_are_of_that_of_their_topic() {
+    let anonymous = |serial: &str| {
+        let mut message = order("a", 0, 0, &TO, TO.len());
+        for node in message["nodes"].as_array_mut().unwrap() {
+            node["nodeDescription"] = json!("");
+            let more =
+                json!({ "mapDescription": "", "theta": 0.0, "allowedDeviationXY": 0.0, "allowedDeviationTheta": 0.0 });
+            node["nodePosition"].as_object_mut().unwrap().extend(more.as_object().unwrap().clone());
+        }
+        let header =
+            json!({ "headerId": 0, "timestamp": "", "version": "2.0.0", "manufacturer": "", "serialNumber": serial });
+        message.as_object_mut().unwrap().extend(header.as_object().unwrap().clone());
+        message
+    };
+    let [manager, _] = interfaces();
+    let topic = manager.topic(ProtocolVersion::V2_0, &key(), TopicKind::Order);
+    for (serial, is_its) in [("", true), ("002", false)] {
+        let mut own = Pair::new();
+        own.bridge.receive(&mut own.supervisor, &topic, anonymous(serial).to_string().as_bytes(), own.time);
+        own.lasts(60.0);
+        assert_eq!(own.is_done("a"), is_its, "{serial:?}: {:?}", own.state);
+        assert_eq!(own.errors().iter().any(|error| error.contains("serialNumber")), !is_its, "{:?}", own.errors());
+    }
+}
+
 #[test]
 fn an_order_that_is_lost_is_sent_again() {
     let mut own = Pair::new();
