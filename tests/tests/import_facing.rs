@@ -186,7 +186,7 @@ fn vehicles_travel_sideways_where_their_edges_say_so() {
     let turning = ordered([edge(1, "TANGENTIAL", 0.0), edge(2, "GLOBAL", 0.0), edge(3, "TANGENTIAL", 0.5 * PI)]);
     let third = 3.0_f64.atan2(4.0);
     for (agent, structure, expected) in
-        [(&global, "CSCSCS", [0.2; 3]), (&turning, "SCSCTS", [0.0, 0.0, third + 0.5 * PI])]
+        [(&global, "CSCSCS", [0.2; 3]), (&turning, "SCSTCS", [0.0, 0.0, third + 0.5 * PI])]
     {
         assert!(agent.footprint.is_some());
         assert_eq!(agent.structure(), structure, "{agent:?}");

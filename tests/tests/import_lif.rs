@@ -329,10 +329,10 @@ fn outlines_face_as_edges_say() {
         (quarter, json!("GLOBAL"), Facing::Ahead),
         (half, Value::Null, Facing::Backward),
         (-quarter, json!("GLOBAL"), Facing::Backward),
-        (quarter, Value::Null, Facing::Any),
+        (quarter, Value::Null, Facing::sideways(quarter)),
         // Not 0.05 degrees.
-        (0.05, Value::Null, Facing::Any),
-        (0.0, json!("GLOBAL"), Facing::Any),
+        (0.05, Value::Null, Facing::sideways(0.05)),
+        (0.0, json!("GLOBAL"), Facing::sideways(-quarter)),
     ] {
         let text = lif(orientation, kind);
         assert_eq!(read(&text, &outlined).0.edges[0].facing[0], facing, "{orientation}");

@@ -198,13 +198,21 @@ fn outlines_face_as_orders_say() {
         let global = json!({ "orientation": -ahead, "orientationType": "GLOBAL" });
         assert_eq!(outline(global, thetas), (Some(turned.clone()), reach));
     }
-    // Any other way, or one of which nothing is said in version 3: the disc around it.
-    for edge in [
-        json!({ "orientation": 0.0, "orientationType": "GLOBAL" }),
-        json!({ "orientation": 1.0 }),
-        json!({ "orientation": 0.0, "rotationAllowed": true }),
-        json!({ "reachOrientationBeforeEntering": false }),
-    ] {
+    // Sideways: turned.
+    for (edge, angle) in
+        [(json!({ "orientation": 0.0, "orientationType": "GLOBAL" }), -ahead), (json!({ "orientation": 1.0 }), 1.0)]
+    {
+        let (Some(turned), own) = outline(edge.clone(), none.clone()) else { panic!("no outline") };
+        assert_eq!(own, reach, "{edge}");
+        let (sin, cos) = f64::sin_cos(angle);
+        for ([x, y], [u, v]) in forward.iter().zip(turned) {
+            assert!((x * cos - y * sin - u).hypot(x * sin + y * cos - v) < 1e-12, "{edge}");
+        }
+    }
+    // Any way, or one of which nothing is said in version 3: the disc around it.
+    for edge in
+        [json!({ "orientation": 0.0, "rotationAllowed": true }), json!({ "reachOrientationBeforeEntering": false })]
+    {
         assert_eq!(outline(edge.clone(), none.clone()), (None, reach), "{edge}");
         assert!(read(&order(edge, none.clone()), &options()).is_ok());
     }
