@@ -169,17 +169,49 @@ function track() {
   return rows(pcr.pcr_track(chosen, answers.first, step(), COLUMNS + 1), 1).map(([length], k) => [answers.first + k * step(), length]);
 }
 
+/**
+ * The regions of each other agent, up to the present time and after it, one path each, so that no seams show. A region is between its
+ * intervals at two times that follow one another, and ends in a tip half a step beyond the last one.
+ */
+function shapes(px, py) {
+  const paths = new Map(), at = new Map(), x = (place) => px(answers.first + place * step());
+  const map = answers.map.map(([place, other, lo, hi]) => {
+    // At least a pixel high.
+    const middle = (py(lo) + py(hi)) / 2, half = Math.max(0.5, (py(lo) - py(hi)) / 2);
+    return { place, other, lo, hi, below: middle + half, middle, above: middle - half };
+  });
+  for (const slice of map) {
+    const key = `${slice.place} ${slice.other}`;
+    at.set(key, [...(at.get(key) ?? []), slice]);
+  }
+  const meeting = (place, { other, lo, hi }) => (at.get(`${place} ${other}`) ?? []).filter((slice) => slice.lo <= hi && lo <= slice.hi);
+  for (const slice of map) {
+    const { place, other, below, middle, above } = slice;
+    if (!paths.has(other)) paths.set(other, [new Path2D(), new Path2D()]);
+    const path = paths.get(other)[answers.first + place * step() > time ? 1 : 0];
+    const piece = (...corners) => {
+      corners.forEach(([where, y], k) => (k ? path.lineTo(x(where), y) : path.moveTo(x(where), y)));
+      path.closePath();
+    };
+    const before = meeting(place - 1, slice);
+    for (const last of before) piece([place - 1, last.below], [place, below], [place, above], [place - 1, last.above]);
+    if (!before.length) piece([Math.max(place - 0.5, 0), middle], [place, below], [place, above]);
+    if (!meeting(place + 1, slice).length) piece([place, below], [Math.min(place + 0.5, COLUMNS), middle], [place, above]);
+  }
+  return paths;
+}
+
 function drawMap() {
   const { pen, width, height } = fit($("map")), agent = scenario.agents[chosen];
   if (!agent || !answers.valid) return;
   const { left, top, wide, high, px, py } = axes(width, height), length = answers.lengths[chosen];
-  // Whole pixels, so that neighbours neither overlap nor leave a gap.
-  const border = (place) => Math.round(left + wide * Math.min(Math.max(place - 0.5, 0) / COLUMNS, 1));
   // While time goes on, what is still to come is faint: the map is drawn as the agents drive.
-  for (const [place, other, lo, hi] of answers.map) {
+  for (const [other, [now, later]] of shapes(px, py)) {
     pen.fillStyle = colour(other);
-    pen.globalAlpha = playing && answers.first + place * step() > time ? 0.12 : 0.55;
-    pen.fillRect(border(place), py(hi), border(place + 1) - border(place), Math.max(1, py(lo) - py(hi)));
+    pen.globalAlpha = 0.55;
+    pen.fill(now);
+    pen.globalAlpha = playing ? 0.12 : 0.55;
+    pen.fill(later);
   }
   pen.strokeStyle = tint("--own");
   pen.lineWidth = 2;

@@ -62,12 +62,17 @@ fn on(edge: &LayoutEdge, length: f64) -> Pose {
     last
 }
 
-/// The directions in which an edge may be travelled: the nodes from and to which, and the headings there.
-fn ways(edge: &LayoutEdge) -> Vec<([usize; 2], [f64; 2])> {
+/// The directions in which an edge may be travelled: the nodes from and to which, the directions there, and the angle from them to the
+/// heading of a vehicle that travels sideways.
+fn ways(edge: &LayoutEdge) -> Vec<([usize; 2], [f64; 2], f64)> {
     let [start, end] = [on(edge, 0.0).2, on(edge, edge.length()).2];
     let [from, to] = edge.ends;
-    let back = edge.is_two_way().then_some(([to, from], [end + PI, start + PI]));
-    [([from, to], [start, end])].into_iter().chain(back).collect()
+    let [there, back] = edge.facing.map(|facing| match facing {
+        Facing::Sideways(_) => facing.angle().unwrap(),
+        _ => 0.0,
+    });
+    let back = edge.is_two_way().then_some(([to, from], [end + PI, start + PI], back));
+    [([from, to], [start, end], there)].into_iter().chain(back).collect()
 }
 
 fn within_half_turn(angle: f64) -> f64 {
@@ -84,39 +89,44 @@ fn many_poses(layout: &Layout, edge: &LayoutEdge, steps: usize) -> Vec<Pose> {
     let length = edge.length();
     let steps = || (0..=steps).map(move |k| k as f64 / steps as f64);
     let mut poses = Vec::new();
-    for ([from, to], [start, end]) in ways(edge) {
+    for ([from, to], [start, end], facing) in ways(edge) {
         let backward = from != edge.ends[0];
         for share in steps() {
             let Pose(at, point, heading) = on(edge, share * length);
-            poses.push(Pose(at, point, if backward { heading + PI } else { heading }));
+            poses.push(Pose(at, point, facing + if backward { heading + PI } else { heading }));
         }
         let others = || layout.edges.iter().flat_map(ways);
-        // Headings, and the nodes at the other ends of the ways.
-        let mut turn = |node: usize, from: &[(f64, usize)], to: &[(f64, usize)]| {
+        // Directions, the nodes at the other ends of the ways, and the angles to the headings.
+        let mut turn = |node: usize, from: &[(f64, usize, f64)], to: &[(f64, usize, f64)]| {
             let at = if node == edge.ends[0] { 0.0 } else { length };
             let open = layout.edges.iter().filter(|edge| !edge.closed).flat_map(ways);
-            let onward: Vec<_> = open.filter(|(ends, _)| ends[0] == node).collect();
+            let onward: Vec<_> = open.filter(|(ends, ..)| ends[0] == node).collect();
             let is_half = |turn: f64| turn.abs() > PI - KINK;
-            let is_back = |a: (f64, usize), b: (f64, usize)| is_half(within_half_turn(b.0 - a.0)) && a.1 == b.1;
+            let is_back =
+                |a: (f64, usize, f64), b: (f64, usize, f64)| is_half(within_half_turn(b.0 - a.0)) && a.1 == b.1;
             for (a, b) in from.iter().flat_map(|a| to.iter().map(move |b| (*a, *b))) {
                 // It goes back only where no other way leads on from there.
-                if is_back(a, b) && onward.iter().any(|(ends, headings)| !is_back(a, (headings[0], ends[1]))) {
+                if is_back(a, b) && onward.iter().any(|(ends, headings, _)| !is_back(a, (headings[0], ends[1], 0.0))) {
                     continue;
                 }
-                let turn = within_half_turn(b.0 - a.0);
+                let turn = within_half_turn(b.0 + b.2 - a.0 - a.2);
                 // Half a turn may go to either side.
                 let other = is_half(turn).then(|| turn - (2.0 * PI).copysign(turn));
                 for turn in std::iter::once(turn).chain(other) {
-                    poses.extend(steps().map(|share| Pose(at, on(edge, at).1, a.0 + turn * share)));
+                    poses.extend(steps().map(|share| Pose(at, on(edge, at).1, a.0 + a.2 + turn * share)));
                 }
             }
         };
-        let arriving: Vec<_> =
-            others().filter(|(ends, _)| ends[1] == from).map(|(ends, headings)| (headings[1], ends[0])).collect();
-        let leaving: Vec<_> =
-            others().filter(|(ends, _)| ends[0] == to).map(|(ends, headings)| (headings[0], ends[1])).collect();
-        turn(from, &arriving, &[(start, to)]);
-        turn(to, &[(end, from)], &leaving);
+        let arriving: Vec<_> = others()
+            .filter(|(ends, ..)| ends[1] == from)
+            .map(|(ends, headings, facing)| (headings[1], ends[0], facing))
+            .collect();
+        let leaving: Vec<_> = others()
+            .filter(|(ends, ..)| ends[0] == to)
+            .map(|(ends, headings, facing)| (headings[0], ends[1], facing))
+            .collect();
+        turn(from, &arriving, &[(start, to, facing)]);
+        turn(to, &[(end, from, facing)], &leaving);
     }
     poses
 }
