@@ -129,7 +129,7 @@ fn a_vehicle_that_rotates_on_its_edge_has_any_heading() {
     // One that faces aslant has that heading all along.
     for (property, turned, y) in [
         (json!({ "rotationAllowed": true, "vehicleOrientation": 0.0 }), &turned[..], 3.3),
-        (json!({ "vehicleOrientation": 1.0 }), &[1.0], 3.0),
+        (json!({ "vehicleOrientation": 1.0 }), &[1.0][..], 3.0),
     ] {
         let ends = [[0.0, 0.0], [5.0, 0.0], [2.0, y], [3.0, y]];
         let imported = fleet.read(InputFormat::Lif, &lif(property, ends));
