@@ -263,10 +263,12 @@ def driving(folder, browser):
     wrong = []
     begin(browser, "diagonal")
     # How strong the region is, before now and after it.
-    ink = lambda: browser.value("""(() => { const m = $('map'), pen = m.getContext('2d'), { px } = axes(m.clientWidth, m.clientHeight), found = [new Set(), new Set()];
-      pen.fillRect = (x) => { if (Math.abs(x - px(time)) > 4) found[Number(x > px(time))].add(pen.globalAlpha); };
+    ink = lambda: browser.value("""(() => { const m = $('map'), pen = m.getContext('2d'), { px, py } = axes(m.clientWidth, m.clientHeight), found = [new Set(), new Set()];
+      const scale = m.width / m.clientWidth, middles = answers.map.map(([place, , lo, hi]) => [px(answers.first + place * step()), py((lo + hi) / 2)]);
+      pen.fill = (path) => { if (path) for (const [x, y] of middles)
+        if (Math.abs(x - px(time)) > 4 && pen.isPointInPath(path, scale * x, scale * y)) found[Number(x > px(time))].add(pen.globalAlpha); };
       drawMap();
-      delete pen.fillRect;
+      delete pen.fill;
       return found.map((all) => [...all]); })()""")
     places = lambda: browser.value("rows(pcr.pcr_places(time), 6).map((place) => place[3])")
     browser.value("time = 0; $('play').click(); 0")
