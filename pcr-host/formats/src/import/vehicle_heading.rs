@@ -149,7 +149,12 @@ pub(super) fn of_edge(
     };
     orientations.iter().try_for_each(|orientation| in_radians(edge, field, *orientation).map(drop))?;
     let ahead = if is_global { heading } else { Some(0.0) };
-    let facing = |orientation: &f64| match ahead.map(|ahead| wrapped(orientation - ahead)) {
+    // What is within half a turn keeps its digits.
+    let off = |ahead: f64, orientation: f64| match orientation - ahead {
+        off if off.abs() <= PI => off,
+        off => wrapped(off),
+    };
+    let facing = |orientation: &f64| match ahead.map(|ahead| off(ahead, *orientation)) {
         Some(off) if off.abs() <= ROUNDING => Facing::Ahead,
         Some(off) if off.abs() >= PI - ROUNDING => Facing::Backward,
         Some(off) => Facing::sideways(off),
