@@ -7,7 +7,7 @@ use crate::refusal::Refusal;
 use crate::route_graph::RouteGraph;
 use std::collections::BTreeSet;
 
-/// What is known of where a robot stands.
+/// Whether a robot stands, and where, by its messages.
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum Stand {
     /// It moves, or nothing has been said yet.

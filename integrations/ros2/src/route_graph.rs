@@ -95,7 +95,13 @@ impl RouteGraph {
             let still = still.motion().map_err(Refusal::Range)?;
             let reach = reach(driver) + reach(robot) + SLACK;
             for edge in &self.edges {
-                if !found.contains(&edge.id) && distance(pose.position, edge.ends) <= reach {
+                if found.contains(&edge.id) || distance(pose.position, edge.ends) > reach {
+                    continue;
+                }
+                // Who drives an edge without a length is at its node in any heading.
+                if edge.ends[0] == edge.ends[1] {
+                    found.insert(edge.id);
+                } else {
                     let (driven, duration) = driven(edge, driver)?;
                     let driven = driven.motion().map_err(Refusal::Range)?;
                     let encounter = Encounter::new(&driven, &still);
@@ -114,11 +120,8 @@ fn driven(edge: &RouteEdge, driver: &RobotConfig) -> Result<(OwnedMotion, f64), 
     let [from, to] = edge.ends;
     let way = [to[0] - from[0], to[1] - from[1]];
     let (length, yaw) = (way[0].hypot(way[1]), way[1].atan2(way[0]));
-    let begin = TimedPose { time: 0.0, position: from, yaw };
-    // Who is at a node only, is there in any direction: that of the file is not known.
-    let poses = [begin, TimedPose { time: length, position: to, yaw }];
-    let poses = if length > 0.0 { &poses[..] } else { &poses[..1] };
-    Ok((motion(poses, driver)?, length))
+    let poses = [(0.0, from), (length, to)].map(|(time, position)| TimedPose { time, position, yaw });
+    Ok((motion(&poses, driver)?, length))
 }
 
 fn motion(poses: &[TimedPose], robot: &RobotConfig) -> Result<OwnedMotion, Refusal> {

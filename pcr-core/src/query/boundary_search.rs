@@ -74,7 +74,7 @@ impl<S: Scalar> ForbiddenBracket<S> {
         }
     }
 
-    /// The same where the start or the arrival of an agent may cut a contact off.
+    /// Returns the bracket with the note whether the start or the arrival of an agent may cut a contact off.
     pub(super) fn with_cuts(self, cut: bool) -> Self {
         Self { cut, ..self }
     }
@@ -145,7 +145,7 @@ fn vanishing<S: Scalar>((near, short): (S, S), (far, long): (S, S)) -> Option<S>
     Some(if near < far { near - left } else { near + left })
 }
 
-/// The same for the durations themselves.
+/// Returns the value at which a contact would vanish whose duration falls linearly, from two values inside with their durations.
 fn vanishing_cut<S: Scalar>((near, short): (S, S), (far, long): (S, S)) -> Option<S> {
     if short >= long {
         return None;

@@ -15,7 +15,8 @@ pub(super) const FACINGS: u64 = 4;
 /// The versions that are read, for messages.
 pub(super) const KNOWN_VERSIONS: &str = "1 to 4, all that this pcr knows,";
 
-/// What is not in files of all versions: the error of the first of each, as the version of a file may be behind its agents.
+/// For each key that not all versions of files have, the error of its first use. A file may name its version after its agents, so that the
+/// errors are kept until the version is known.
 #[derive(Default)]
 pub(super) struct VersionFaults {
     /// Of gears.

@@ -78,7 +78,7 @@ struct GivenFacing {
     position: Position,
     /// \[rad\]
     angle: f64,
-    /// Whether it is an angle, and not a gear.
+    /// Whether the file has `facing` or `facing_deg`, and not `gear`.
     is_angle: bool,
 }
 
