@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # All checks and tests, step by step; stops at the first that fails. Any part that cannot run is a failure.
 # Needs rustup's cargo (https://rustup.rs); what else is missing it installs, and says so.
-#   .ci/test.sh            everything but benches, fuzz, tls, others, engines and integrations
+#   .ci/test.sh            everything but benches, fuzz, tls, others, engines, integrations and release
 #   .ci/test.sh quick      for daily work: format, lints, unit tests
 #   .ci/test.sh STEP...    some: style docs features no_std c firmware tests benches serve tls others integrations pages web schemas python engines packages release instructions fuzz proofs
 set -euo pipefail
@@ -17,8 +17,8 @@ timed() {
 everything_in=(--workspace --locked)
 # Lints and documentation are of the same profile as the tests: macros and programs that run in builds are built once then.
 profile=checked
-# These two have no tests of their own here, but much that they depend on.
-checked=("${everything_in[@]}" --exclude pcr-benches --exclude pcr-py --profile checked)
+# The benchmarks have no tests, but much that they depend on.
+checked=("${everything_in[@]}" --exclude pcr-benches --profile checked)
 # Whatever is run of it is asked for with all of these targets. Without one of them, cbindgen's parser of Rust is needed by macros only, which
 # cargo then builds in another way, and with them, once more, everything that uses them.
 targets=(--lib --tests)
@@ -197,10 +197,9 @@ web() {
 }
 
 python() {
-  step "the Python package"
-  tool
-  bindings/python/check.sh "${CARGO_TARGET_DIR:-target}/checked/pcr"
-  bindings/python/arrays.sh "${CARGO_TARGET_DIR:-target}/python/bin/python"
+  step "the Python package, of the module as the tests are built"
+  cargo build -q "${checked[@]}" "${targets[@]}"
+  bindings/python/check.sh "${CARGO_TARGET_DIR:-target}/checked/pcr" "${CARGO_TARGET_DIR:-target}/checked/lib_pcr.so"
   .ci/readme.py "In Python"
 }
 
@@ -211,8 +210,7 @@ engines() {
 }
 
 # The crates that could be published: licences, a README and all that they need are in them. Unpacked, they are a workspace of their own,
-# in which each of them, its tests and its examples are checked by the compiler. Those are run that take seconds to build; the others are
-# the same as in the repository, where the data of some is.
+# in which those for microcontrollers and their examples are checked by the compiler, on the host and on three targets.
 packages() {
   step "packages, outside of the workspace"
   local target root=$PWD crates=() crate
@@ -249,9 +247,7 @@ packages() {
   (
     cd "$target/unpacked"
     export CARGO_TARGET_DIR=$target CARGO_INCREMENTAL=0
-    cargo check -q --workspace --profile "$profile" --all-targets --features pcr-core/std
-    # What is recorded for the proofs is compared in the repository, where the proofs are.
-    cargo test -q -p pcr-core -p pcr-fixed -p pcr-certify --profile "$profile" --lib --examples --features pcr-core/std -- --skip recorded::
+    cargo check -q -p pcr-core -p pcr-fixed --profile "$profile" --all-targets --features pcr-core/std
     local machine
     for machine in thumbv6m-none-eabi thumbv7em-none-eabihf riscv32imc-unknown-none-elf; do
       "$root/firmware/cross.sh" "$machine" check -q --release -p pcr-core -p pcr-fixed
@@ -259,9 +255,36 @@ packages() {
   )
 }
 
+# Not part of everything: what only a release needs. It takes what `python` has made.
 release() {
+  packages
+  local target crate
+  target=$(realpath "${CARGO_TARGET_DIR:-target}")
+  (
+    cd "$target/unpacked"
+    export CARGO_TARGET_DIR=$target CARGO_INCREMENTAL=0
+    step "packages of the host: each alone, then all with their tests and examples"
+    for crate in pcr-*; do cargo check -q -p "$crate" --profile "$profile" --no-default-features; done
+    cargo check -q --workspace --profile "$profile" --all-targets --features pcr-core/std
+    # What is recorded for the proofs is compared in the repository, where the proofs are.
+    cargo test -q -p pcr-core -p pcr-fixed -p pcr-certify --profile "$profile" --lib --examples --features pcr-core/std -- --skip recorded::
+  )
+  step "the wheel"
+  cargo build -q "${checked[@]}" "${targets[@]}"
+  local wheel
+  rm -rf "$target/wheels"
+  "$target/python/bin/pip" install -q --disable-pip-version-check "maturin>=1.9,<2"
+  "$target/python/bin/maturin" build -q -m bindings/python/Cargo.toml --profile wheel --locked --out "$target/wheels"
+  wheel=$(ls "$target"/wheels/pcr_py-*.whl)
+  echo "$(stat -c %s "$wheel") bytes"
+  if [ "$(stat -c %s "$wheel")" -gt 2250000 ]; then
+    echo "the wheel has more than 2.25 MB: what has it gained?" >&2
+    return 1
+  fi
+  bindings/python/check.sh "$target/checked/pcr" "$wheel"
+  bindings/python/arrays.sh "$target/python/bin/python"
   step "the quick parts of a release, built twice from clean clones: the same bit for bit"
-  .ci/release.sh "${CARGO_TARGET_DIR:-target}/release-parts" library playground report
+  .ci/release.sh "$target/release-parts" library playground report
 }
 
 instructions() {
@@ -269,31 +292,19 @@ instructions() {
   benches/instructions.sh
 }
 
-# The features of a crate, and sets of two of them at most, a line each.
+# The features of a crate.
 features_of() { sed -n '/^\[features\]/,/^\[/s/^\([a-z]*\) = .*/\1/p' "$1/Cargo.toml" | grep -vx default; }
-sets_of() {
-  local sets=("") feature set
-  for feature in $(features_of "$1"); do
-    for set in "${sets[@]}"; do sets+=("$set${set:+,}$feature"); done
-  done
-  # All sets are many; none, one and two of them show what one needs of another.
-  printf '%s\n' "${sets[@]}" | grep -v ',.*,'
-}
 
 features() {
-  local crate set
+  local crate feature
   for crate in pcr-core pcr-fixed; do
-    step "$crate with each set of features, and without any"
-    for set in $(sets_of $crate | sed 's/^$/-/'); do
-      echo "features: $set"
-      cargo check -q -p $crate --profile "$profile" --locked --no-default-features --features "${set#-}"
+    # One alone shows what it needs of another.
+    step "$crate without features, with each one alone, and with all"
+    for feature in "" $(features_of $crate); do
+      echo "features: ${feature:-none}"
+      cargo check -q -p $crate --profile "$profile" --locked --no-default-features --features "$feature"
     done
     cargo clippy -q -p $crate --profile "$profile" --locked --all-features --all-targets -- -D warnings
-  done
-  step "each part of the host alone, with the features that it names itself"
-  for crate in pcr-formats pcr-planning pcr-execution pcr-exclusions pcr-drawing pcr-comparing pcr-host; do
-    echo "$crate"
-    cargo clippy -q -p $crate --profile "$profile" --locked --no-default-features -- -D warnings
   done
   step "defmt::Format on all public types"
   local source name missing=""
@@ -380,7 +391,7 @@ everything() {
   local part log failed=0
   log=$(mktemp)
   set -m # a process group of its own, that is ended as a whole
-  .ci/test.sh no_std c firmware instructions packages release python proofs >"$log" 2>&1 &
+  .ci/test.sh no_std c firmware instructions proofs packages python >"$log" 2>&1 &
   beside=$!
   set +m
   trap 'kill -- "-$beside" 2>/dev/null || true' EXIT

@@ -1,30 +1,38 @@
 #!/usr/bin/env bash
-# The Python package: a wheel, installed in an environment of its own, tested against the tool, and type-checked.
-#   check.sh PCR       PCR is the tool
+# The Python package, installed in an environment of its own, tested against the tool, and type-checked.
+#   check.sh PCR PACKAGE     PCR is the tool, PACKAGE a wheel, or the module as cargo builds it: target/checked/lib_pcr.so
 set -euo pipefail
 cd "$(dirname "$0")/../.."
-tool=$(realpath "${1:?usage: $0 PCR}")
+[ $# = 2 ] || { sed -n '3s/^# *//p' "$0" >&2; exit 2; }
+tool=$(realpath "$1") package=$2
 target=${CARGO_TARGET_DIR:-target}
-wheels=$target/wheels environment=$target/python
+environment=$target/python
 python=${PYTHON:-python3}
 if ! "$python" -m venv "$environment" >/dev/null 2>&1; then
   .ci/install.sh python3-venv
   "$python" -m venv "$environment"
 fi
 bin=$environment/bin
-"$bin/pip" install -q --disable-pip-version-check "maturin>=1.9,<2" numpy mypy matplotlib shapely abi3audit
-rm -rf "$wheels"
-"$bin/maturin" build -q -m bindings/python/Cargo.toml --profile wheel --locked --out "$wheels"
-wheel=$(ls "$wheels"/pcr_py-*.whl)
-size=$(stat -c %s "$wheel")
-echo "$(basename "$wheel"): $size bytes"
-if [ "$size" -gt 2250000 ]; then
-  echo "the wheel has more than 2.25 MB: what has it gained?" >&2
-  exit 1
-fi
-"$bin/pip" install -q --disable-pip-version-check --force-reinstall --no-deps "$wheel"
+"$bin/pip" install -q --disable-pip-version-check numpy mypy matplotlib shapely abi3audit
+
+# install PYTHON: the package, in the environment of this interpreter.
+install() {
+  local site
+  "$1" -m pip uninstall -q --disable-pip-version-check --yes pcr-py >/dev/null 2>&1
+  site=$("$1" -c 'import sysconfig; print(sysconfig.get_path("platlib"))')
+  rm -rf "$site/pcr"
+  case $package in
+    *.whl) "$1" -m pip install -q --disable-pip-version-check --no-deps "$package" ;;
+    *)
+      cp -r bindings/python/python/pcr "$site/pcr"
+      cp "$package" "$site/pcr/_pcr.abi3.so"
+      ;;
+  esac
+}
+
+install "$bin/python"
 # No symbol but those of the stable interface of CPython 3.9.
-"$bin/abi3audit" --strict "$wheel"
+"$bin/abi3audit" --strict "$("$bin/python" -I -c 'import pcr._pcr; print(pcr._pcr.__file__)')"
 # Without NumPy in sight: nothing is needed.
 "$bin/python" -I -c 'import sys; sys.modules["numpy"] = None; import pcr; assert len(pcr.Fleet([], name="none").regions()) == 0'
 PCR=$tool "$bin/python" bindings/python/tests/test_pcr.py
@@ -37,15 +45,15 @@ for test in doctest.DocTestFinder().find(pcr, "pcr", module=False, globs=vars(pc
 failed, run = runner.summarize()
 sys.exit(1 if failed or run < 20 else 0)
 DOCTEST
-# One wheel is for all of them: the oldest CPython and newer ones, where this machine has them.
+# One module is for all of them: the oldest CPython and newer ones, where this machine has them.
 others=(python3.9 python3.10 python3.12 python3.13)
 if command -v pyenv >/dev/null; then others+=("$(pyenv root)"/versions/3.{9,1[0-9]}.*/bin/python); fi
 for other in "${others[@]}"; do
   if "$other" -m venv --clear "$target/python-other" >/dev/null 2>&1; then
-    "$target/python-other/bin/pip" install -q --disable-pip-version-check --no-deps "$wheel"
+    install "$target/python-other/bin/python"
     "$target/python-other/bin/python" -I -c 'import sys, pcr; fleet = pcr.Fleet.read(sys.argv[1])
 assert len(fleet.regions()) == 136 and len(fleet.plan().fleet.conflicts()) == 0
-print("the same wheel in CPython", sys.version.split()[0])' tests/data/paper12.json
+print("the same module in CPython", sys.version.split()[0])' tests/data/paper12.json
   fi
 done
 # The example of the package's README prints what that says.
