@@ -203,7 +203,7 @@ python() {
   .ci/readme.py "In Python"
 }
 
-# Not part of everything: packages of 100 MB. It takes what `python` has built.
+# Not part of everything: packages of 100 MB. It takes what `python` or `release` has installed.
 engines() {
   step "what others compute with: a cluster of Dask, frames of GeoPandas"
   bindings/python/engines.sh "${CARGO_TARGET_DIR:-target}/python/bin/python"
@@ -255,7 +255,7 @@ packages() {
   )
 }
 
-# Not part of everything: what only a release needs. It takes what `python` has made.
+# Not part of everything: what only a release needs. It takes the environment that `python` has made.
 release() {
   packages
   local target crate

@@ -4,13 +4,16 @@
 //! exactly. That of an outline is drawn as the convex hulls of neighbouring poses.
 
 use super::axis::{PlotArea, ROOM_ABOVE, ROOM_BELOW, at_least_visible, room_at_left};
-use super::svg::{PathData, PixelCoordinate, SvgWriter};
+use super::labels::{LabelPlacer, SPACING, around};
+use super::svg::{PathData, PixelCoordinate, SvgWriter, text_width};
 use pcr_core::Interval;
+use pcr_exclusions::stretch;
 use pcr_formats::import::{ImportedLayout, Layout, LayoutEdge, LayoutNode};
 use pcr_formats::scenario::PathSegment;
 use pcr_formats::scenario::PlacedSegment;
 use pcr_planning::exclusion_table::{EdgeTraversals, SweptShape, corridor};
 use serde_json::{Value, json};
+use std::collections::HashSet;
 use std::f64::consts::PI;
 use std::fmt::Display;
 
@@ -20,11 +23,20 @@ const SIDE: f64 = 720.0;
 /// Smallest ones \[px\].
 const LEAST: f64 = 160.0;
 
-/// Nodes up to which their names are written.
-const NAMED: usize = 60;
+/// Nodes up to which their names are written: of more only few have room.
+const NAMED: usize = 1000;
 
 /// Size of these names \[px\].
 const NAME_SIZE: f64 = 9.0;
+
+/// Radius of what names of nodes keep off \[px\].
+const DOT: f64 = 2.5;
+
+/// Shortest edge with an arrow \[px\].
+const ARROW: f64 = 14.0;
+
+/// Points of an edge at most that names keep off.
+const MOST_OBSTACLES: f64 = 2000.0;
 
 /// A level of a layout that a vehicle travels.
 #[derive(Clone, Copy, Debug)]
@@ -108,6 +120,43 @@ pub(super) fn bounds(layout: &Layout, level: Option<usize>, radius: f64) -> [Int
     range.map(room).map(|(lo, hi)| at_least_visible(Interval::new(lo, hi)))
 }
 
+/// The names of nodes beside them, each where it covers least of the edges; none where it would cover another name or a node.
+fn draw_names(svg: &mut SvgWriter, frame: &PlotArea, edges: &[&LayoutEdge], nodes: &[&LayoutNode]) {
+    let mut placer = LabelPlacer::default();
+    let metres = SPACING * frame.x.units_per_pixel();
+    for edge in edges {
+        let length = edge.length();
+        let count = (length / metres).ceil().min(MOST_OBSTACLES);
+        let points = (0..=count as usize).filter_map(|k| {
+            let at = length * k as f64 / count.max(1.0);
+            stretch(&edge.curve, [at; 2]).first().map(|piece| frame.at(piece.start))
+        });
+        placer.avoid(1.0, points);
+    }
+    for node in nodes {
+        placer.block(around(frame.at(node.point), [2.0 * DOT; 2]));
+    }
+    for node in nodes {
+        let ([x, y], name) = (frame.at(node.point), node.id.to_string());
+        let size = [text_width(&name, NAME_SIZE), NAME_SIZE];
+        let [right, up] = [DOT + size[0] / 2.0 + 1.0, DOT + size[1] / 2.0 + 1.0];
+        let beside = [
+            [right, -up],
+            [-right, -up],
+            [right, up],
+            [-right, up],
+            [right, 0.0],
+            [-right, 0.0],
+            [0.0, -up],
+            [0.0, up],
+        ];
+        let candidates = beside.map(|[dx, dy]| (0.0, [x + dx, y + dy]));
+        if let Some([x, y]) = placer.best_position(size, candidates, frame.edges) {
+            svg.label([x, y + 0.36 * NAME_SIZE], "middle", &[], &name);
+        }
+    }
+}
+
 impl LayoutLevelView<'_> {
     /// Box around what is on the level \[m\].
     pub(super) fn bounds(&self) -> [Interval<f64>; 2] {
@@ -162,6 +211,22 @@ impl LayoutLevelView<'_> {
         svg.end();
         svg.start("g", &[&round[..], &[("stroke", &"#1d2125")]].concat());
         edges.iter().for_each(|edge| stroke(svg, &edge.curve, 1.1));
+        // No arrows between nodes with ways in both directions, which may be two edges.
+        let steps = || edges.iter().flat_map(|edge| edge.steps());
+        let ways: HashSet<[usize; 2]> = steps().map(|step| [step.origin(), step.target()]).collect();
+        let one_way = steps().filter(|step| !ways.contains(&[step.target(), step.origin()]));
+        let arrows = one_way.fold(PathData::default(), |mut arrows, step| {
+            let length = step.edge.length();
+            if length * metre >= ARROW
+                && let Some(middle) = stretch(&step.edge.curve, [length / 2.0; 2]).first()
+            {
+                arrows.arrow(frame.at(middle.start), middle.heading + if step.backward { PI } else { 0.0 });
+            }
+            arrows
+        });
+        if !arrows.is_empty() {
+            svg.empty("path", &[("d", &arrows), ("fill", &"#1d2125"), ("stroke", &"none")]);
+        }
         svg.end();
         let nodes: Vec<&LayoutNode> = layout.nodes.iter().filter(|node| node.level == self.level).collect();
         let radius = PixelCoordinate(if names { 2.0 } else { 1.2 });
@@ -169,13 +234,9 @@ impl LayoutLevelView<'_> {
         for node in &nodes {
             let [x, y] = frame.at(node.point);
             svg.empty("circle", &[("cx", &PixelCoordinate(x)), ("cy", &PixelCoordinate(y)), ("r", &radius)]);
-            if names && nodes.len() <= NAMED {
-                let name = node.id.to_string();
-                // At the right edge names are on the other side, as far as their width is known.
-                let fits = x + 3.5 + NAME_SIZE * 0.65 * name.chars().count() as f64 <= frame.edges[2];
-                let (at, anchor) = if fits { (x + 3.5, "start") } else { (x - 3.5, "end") };
-                svg.label([at, y - 3.5], anchor, &[], &name);
-            }
+        }
+        if names && nodes.len() <= NAMED {
+            draw_names(svg, frame, &edges, &nodes);
         }
         svg.end();
     }

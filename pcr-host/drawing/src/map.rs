@@ -81,6 +81,8 @@ pub(super) fn draw(
         draw_region(svg, scene, shape, frame);
     }
     draw_trajectory(svg, scene, ego, frame);
+    let entries = scene.entries(ego, shapes).into_iter().map(|point| frame.at(point));
+    entries.for_each(|place| entry_mark(svg, place));
     frame.draw_border(svg);
     names.draw(svg, scene, shapes);
 }
@@ -161,6 +163,21 @@ fn draw_region(svg: &mut SvgWriter, scene: &RegionScene<'_>, shape: &DrawnRegion
         svg.empty("path", &[("d", &lines), ("stroke-width", &"3.6"), ("stroke-linecap", &"round")]);
     }
     svg.end();
+}
+
+/// Where the ego's motion enters a region \[px\].
+fn entry_mark(svg: &mut SvgWriter, [x, y]: [f64; 2]) {
+    svg.empty(
+        "circle",
+        &[
+            ("cx", &PixelCoordinate(x)),
+            ("cy", &PixelCoordinate(y)),
+            ("r", &"3"),
+            ("fill", &"#fff"),
+            ("stroke", &"#c01722"),
+            ("stroke-width", &"1.6"),
+        ],
+    );
 }
 
 /// The ego's own motion: parabolas, and lines where it stands.

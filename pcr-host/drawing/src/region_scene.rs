@@ -3,7 +3,7 @@
 use super::contour::{RegionOutline, trace};
 use super::layout::LayoutLevelView;
 use super::palette::{Colour, colour};
-use pcr_core::{Aabb, Crossing, Interval, Motion, PieceRef, PieceType, Pose, Radians, RegionRef, crossings};
+use pcr_core::{Aabb, Crossing, Encounter, Interval, Motion, PieceRef, PieceType, Pose, Radians, RegionRef, crossings};
 use pcr_formats::plane_geometry::wrapped;
 use pcr_formats::scenario::{Agent, KINK, Scenario};
 use pcr_planning::fleet::HostEcm;
@@ -141,6 +141,16 @@ impl RegionScene<'_> {
     /// Number of regions of an ego.
     pub(super) fn count(&self, ego: usize) -> usize {
         self.ecm.row(self.motions, ego).expect("the table of the fleet").count()
+    }
+
+    /// The points, time \[s\] and length \[m\], at which the motion of an ego enters one of these regions: the begin of each conflict.
+    pub(super) fn entries(&self, ego: usize, shapes: &[DrawnRegion]) -> Vec<[f64; 2]> {
+        let Some(motion) = self.motions.get(ego) else { return Vec::new() };
+        let mut others: Vec<usize> = shapes.iter().map(|shape| shape.other).collect();
+        others.dedup();
+        let others = others.into_iter().filter_map(|other| self.motions.get(other));
+        let begins = others.flat_map(|other| Encounter::new(motion, other).contacts(self.horizon()));
+        begins.map(|time| [time.lo, motion.length_at(time.lo)]).collect()
     }
 
     /// The regions of an ego, traced for pixels of this size \[s\], \[m\].

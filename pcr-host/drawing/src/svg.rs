@@ -170,6 +170,13 @@ impl PathData {
         self.command('Q', &[cx, cy, x, y]);
     }
 
+    /// The head of an arrow at a point, for this heading with y up \[rad\].
+    pub(super) fn arrow(&mut self, [x, y]: [f64; 2], heading: f64) {
+        let (sin, cos) = heading.sin_cos();
+        let point = |along: f64, across: f64| [x + along * cos - across * sin, y - along * sin - across * cos];
+        self.polygon([point(4.2, 0.0), point(-3.0, 2.7), point(-1.8, 0.0), point(-3.0, -2.7)]);
+    }
+
     /// A closed polygon.
     pub(super) fn polygon(&mut self, points: impl IntoIterator<Item = [f64; 2]>) {
         for (k, point) in points.into_iter().enumerate() {

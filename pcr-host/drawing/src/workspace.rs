@@ -168,10 +168,7 @@ fn arrows(motion: &Motion<'_, f64>, frame: &PlotArea) -> PathData {
     let count = (pixels / ARROWS).round().clamp(1.0, 12.0) as usize;
     for k in 0..count {
         let pose = motion.path().pose_at(length * (k as f64 + 0.5) / count as f64);
-        let [x, y] = frame.at([pose.position.x, pose.position.y]);
-        let (sin, cos) = pose.heading.0.sin_cos();
-        let point = |along: f64, across: f64| [x + along * cos - across * sin, y - along * sin - across * cos];
-        data.polygon([point(4.2, 0.0), point(-3.0, 2.7), point(-1.8, 0.0), point(-3.0, -2.7)]);
+        data.arrow(frame.at([pose.position.x, pose.position.y]), pose.heading.0);
     }
     data
 }

@@ -4,6 +4,7 @@ use super::super::axis::TICK_SIZE;
 use super::super::palette::{Colour, DISTINCT};
 use super::super::region_scene::{DrawnRegion, RegionScene};
 use super::super::svg::{PathData, PixelCoordinate, SvgWriter, lines, text_width};
+use super::entry_mark;
 
 /// Height of a row \[px\].
 const ROW: f64 = 15.0;
@@ -37,6 +38,7 @@ struct LegendEntry {
 enum LegendSymbol {
     Trajectory,
     Region,
+    Entry,
     Strip,
     Agent(Colour),
     /// A sentence, without a sample.
@@ -60,6 +62,9 @@ impl Legend {
                 "collision region, labelled by the other agent"
             };
             all.push((LegendSymbol::Region, region.into()));
+        }
+        if !scene.entries(ego, shapes).is_empty() {
+            all.push((LegendSymbol::Entry, "a conflict begins".into()));
         }
         if shapes.iter().any(|shape| !shape.before.is_empty() || !shape.after.is_empty()) {
             all.push((LegendSymbol::Strip, "the other agent stands at its start or end".into()));
@@ -134,6 +139,7 @@ impl Legend {
                     line.line_to([entry.x + WIDTH, y]);
                     svg.empty("path", &[("d", &line), ("stroke", &"#111"), ("stroke-width", &"1.7")]);
                 }
+                LegendSymbol::Entry => entry_mark(svg, [entry.x + WIDTH / 2.0, y]),
                 LegendSymbol::Region => rect(svg, &"#6b7178", 0.3, &"#6b7178"),
                 LegendSymbol::Strip => {
                     rect(svg, &"none", 1.0, &"#6b7178");
