@@ -183,6 +183,18 @@ pub struct PendingMission {
     pub any_heading: bool,
     /// Number in the queue: missions with lower numbers are tried first.
     pub turn: u64,
+    /// Where it may end until the rest of it is admitted, in the order of travel.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub ends: Vec<MissionEnd>,
+}
+
+/// A place at which a mission may end for now.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct MissionEnd {
+    /// Id of the mission that ends there.
+    pub mission: String,
+    /// Number of shapes of the whole mission up to there.
+    pub shapes: usize,
 }
 
 /// The request of a mission. A second request under the same id has to be equal to it.

@@ -15,6 +15,7 @@ mod outline_tests;
 mod positions;
 mod restore;
 mod robot_notes;
+mod waiting_missions;
 
 pub use absence::{StandingPlace, UnplacedVehicle};
 pub use admission::{AdmissionResult, MissionRequest};
@@ -118,7 +119,7 @@ pub struct Supervisor {
     /// Number of the next mission that has to wait.
     turn: u64,
     /// For each robot with a waiting mission: when it is tried again \[s\], the number of attempts, and what kept it.
-    tries: HashMap<String, admission::AdmissionRetry>,
+    tries: HashMap<String, waiting_missions::AdmissionRetry>,
     /// Number of times a robot was added or removed.
     census: u64,
     /// Names of the robots and vehicles that are away.

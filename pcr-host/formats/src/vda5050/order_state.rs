@@ -2,6 +2,7 @@
 //! changed. The importer, the supervisor and simulated vehicles decide by this, and with these words.
 
 use super::decode::DecodeError;
+use super::messages::Action;
 use super::order::{Order, OrderEdge, OrderNode};
 use super::state::{ErrorEntry, ORDER};
 use super::version::{OrderRejection, ProtocolVersion};
@@ -108,8 +109,8 @@ impl OrderState {
     ///
     /// # Errors
     /// [`RejectedOrder`] if its number is lower than that of the last one, if it has the number of the last one and says something else, or if
-    /// it does not go on at the end of the base: at the same node, with the same sequence number, at the same place. Nothing has
-    /// changed then.
+    /// it does not go on at the end of the base: at the same node, with the same sequence number, at the same place, without further actions.
+    /// Nothing has changed then.
     pub fn update(&mut self, mut order: Order) -> Result<UpdateResult, RejectedOrder> {
         order.check()?;
         if order.order_update_id < self.update_id {
@@ -131,6 +132,14 @@ impl OrderState {
         }
         if let Some(why) = moved(stitch, first) {
             return Err(RejectedOrder::new(OrderRejection::Update, "nodes[0].nodePosition", why));
+        }
+        let is_known = |action: &&Action| stitch.actions.iter().any(|own| own.action_id == action.action_id);
+        if let Some(more) = first.actions.iter().find(|action| !is_known(action)) {
+            let why = format!(
+                "node {} was released without action {}; an action that is added belongs to a further node, which may be at the same place",
+                first.node_id, more.action_id
+            );
+            return Err(RejectedOrder::new(OrderRejection::Update, "nodes[0].actions", why));
         }
         if self.base + order.nodes.len() > MOST {
             return Err(RejectedOrder::new(OrderRejection::Order, "nodes", format!("more than {MOST} of one order")));
@@ -301,6 +310,26 @@ mod tests {
             assert_eq!(refused, why.map(|why| (OrderRejection::Update, why.to_owned())));
         }
         assert!(OrderState::new(first).unwrap().update(update()).is_ok());
+    }
+
+    /// It would never have been carried out, and nobody would have said so.
+    #[test]
+    fn a_node_that_was_released_gets_no_further_actions() {
+        let with = |mut order: Order, k: usize, ids: &[&str]| {
+            let action = |id: &&str| json!({ "actionType": "pick", "actionId": id, "blockingType": "HARD" });
+            let actions = serde_json::from_value(ids.iter().map(action).collect::<Vec<_>>().into());
+            order.nodes[k].actions = actions.unwrap();
+            order
+        };
+        let first = with(order(0, &[("a", 0), ("b", 2)], 2), 1, &["1"]);
+        let update = |ids: &[&str]| {
+            let update = with(order(1, &[("b", 2), ("b", 4)], 2), 1, &["2"]);
+            OrderState::new(first.clone()).unwrap().update(with(update, 0, ids))
+        };
+        assert_eq!(update(&["1"]), Ok(UpdateResult::After(1)));
+        assert_eq!(update(&[]), Ok(UpdateResult::After(1)), "what it has done need not be named again");
+        let refused = update(&["1", "2"]).unwrap_err();
+        assert_eq!((refused.error, refused.refusal.field.as_str()), (OrderRejection::Update, "nodes[0].actions"));
     }
 
     #[test]

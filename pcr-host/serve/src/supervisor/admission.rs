@@ -6,7 +6,7 @@ use crate::event::{CancelCause, SupervisorEvent};
 use crate::journal_entry::{JournalEntry, StoredPrecedence, StoredRobot};
 use crate::owned_path::{JOINT, OwnedPath, PathElement, PathRounding, StartPose, WORN, extent};
 use crate::request_error::RequestError;
-use crate::robot::{MissionFingerprint, PendingMission, ROOM, SupervisedRobot};
+use crate::robot::{MissionEnd, MissionFingerprint, PendingMission, ROOM, SupervisedRobot};
 use pcr_core::{AdmissionError, Interval, InvalidInput, PassingState, PathProposal, Progress, RegionRef};
 use pcr_planning::fleet::ConvexBody;
 use serde::{Deserialize, Serialize};
@@ -65,30 +65,12 @@ pub enum AdmissionResult {
 }
 
 /// A path with which a mission was admitted, and what moves along it.
-struct AdmittedPath {
+pub(super) struct AdmittedPath {
     course: OwnedPath,
     rest: PathRounding,
     body: ConvexBody,
     any_heading: bool,
 }
-
-/// The attempts to admit a waiting mission.
-#[derive(Clone, Debug, Default)]
-pub(super) struct AdmissionRetry {
-    next: f64,
-    pause: f64,
-    pub(super) last: Option<AdmissionResult>,
-}
-
-impl AdmissionRetry {
-    /// Lets it be tried at once.
-    pub(super) fn hurry(&mut self) {
-        (self.next, self.pause) = (f64::NEG_INFINITY, PAUSE[0]);
-    }
-}
-
-/// Pause between two attempts \[s\]: the first one, and the largest.
-const PAUSE: [f64; 2] = [0.25, 2.0];
 
 /// A path begins where the one before it ends if it is nowhere on its way farther off than this \[m\], and not turned by more \[rad\].
 const JOIN: f64 = 1e-3;
@@ -109,6 +91,20 @@ impl Supervisor {
     /// # Errors
     /// [`RequestError`] for a mission that can never be admitted; it does not wait then.
     pub fn mission(&mut self, proposal: &MissionRequest, now: f64) -> Result<AdmissionResult, RequestError> {
+        self.mission_in_parts(proposal, Vec::new(), now)
+    }
+
+    /// The same for a mission that need not be admitted as a whole: as long as it has to wait, it is admitted up to the last of these ends that is
+    /// possible, and the rest of it waits.
+    ///
+    /// # Errors
+    /// As [`Supervisor::mission`].
+    pub fn mission_in_parts(
+        &mut self,
+        proposal: &MissionRequest,
+        ends: Vec<MissionEnd>,
+        now: f64,
+    ) -> Result<AdmissionResult, RequestError> {
         self.works()?;
         let place = self.robot_index(&proposal.robot)?;
         // The last ones of each robot are kept, and the journal has them all in one frame.
@@ -146,6 +142,7 @@ impl Supervisor {
             shapes: proposal.path.clone(),
             any_heading: proposal.any_heading,
             turn: self.turn,
+            ends,
         };
         // A length of another path means another place.
         if proposal.expected_path.is_some_and(|path| path != robot.path) {
@@ -162,8 +159,8 @@ impl Supervisor {
         if let Some(before) = &before {
             SupervisedRobot::outlives(&mut robot.past, before.mission.clone());
         }
-        let refused = match self.attempt(place, &waiting, joint, now) {
-            Ok(refused) => refused,
+        let left = match self.attempt_in_parts(place, waiting, joint, now) {
+            Ok(left) => left,
             Err(fault) => {
                 let robot = &mut self.robots[place];
                 (robot.waiting, robot.past) = (before, past);
@@ -174,35 +171,10 @@ impl Supervisor {
             self.drops(&proposal.robot, before.mission, CancelCause::Replaced);
             self.entries.push(JournalEntry::Waiting { robot: proposal.robot.clone(), waiting: None });
         }
-        let Some(verdict) = refused else { return Ok(admitted(&self.robots[place])) };
+        let Some((verdict, rest)) = left else { return Ok(admitted(&self.robots[place])) };
         self.turn += 1;
-        let next = AdmissionRetry { next: now + PAUSE[0], pause: PAUSE[0], last: Some(verdict.clone()) };
-        self.tries.insert(proposal.robot.clone(), next);
-        self.entries.push(JournalEntry::Waiting { robot: proposal.robot.clone(), waiting: Some(waiting.clone()) });
-        self.robots[place].waiting = Some(waiting);
+        self.waits(place, rest, verdict.clone(), now);
         Ok(verdict)
-    }
-
-    /// Gives up the waiting mission of a robot, if there is one: its way ends where its present path ends.
-    ///
-    /// # Errors
-    /// [`RequestError::NoSuchRobot`], [`RequestError::Broken`].
-    pub(crate) fn give_up(&mut self, name: &str) -> Result<(), RequestError> {
-        self.works()?;
-        let place = self.robot_index(name)?;
-        let robot = &mut self.robots[place];
-        let Some(PendingMission { mission, .. }) = robot.waiting.take() else { return Ok(()) };
-        SupervisedRobot::outlives(&mut robot.past, mission.clone());
-        self.tries.remove(name);
-        self.entries.push(JournalEntry::Waiting { robot: name.into(), waiting: None });
-        self.drops(name, mission, CancelCause::Cancelled);
-        Ok(())
-    }
-
-    /// Tells that a waiting mission was given up.
-    pub(super) fn drops(&mut self, robot: &str, mission: String, why: CancelCause) {
-        self.counts.dropped += 1;
-        self.events.push(SupervisorEvent::Dropped { robot: robot.into(), mission, why });
     }
 
     /// Renames the mission of a robot, if another one has the same path: nothing else changes.
@@ -231,17 +203,38 @@ impl Supervisor {
     ///
     /// # Errors
     /// [`RequestError`] for a mission that can never be admitted.
-    fn attempt(
+    pub(super) fn attempt(
         &mut self,
         place: usize,
         mission: &PendingMission,
         joint: f64,
         now: f64,
     ) -> Result<Option<AdmissionResult>, RequestError> {
+        match self.order_mission(place, mission, joint, now)? {
+            Ok((path, dropped)) => self.commit(place, mission, path, dropped).map(|()| None),
+            Err(refused) => {
+                self.counts.refused += 1;
+                Ok(Some(refused))
+            }
+        }
+    }
+
+    /// Orders a mission behind and before all others, as [`Supervisor::attempt`]. The table of orders is then that of the returned path, which the
+    /// robot does not have yet, and the length that is dropped from the start of its present path \[m\].
+    ///
+    /// # Errors
+    /// As [`Supervisor::attempt`]; the table is unchanged then, and where the mission has to wait.
+    pub(super) fn order_mission(
+        &mut self,
+        place: usize,
+        mission: &PendingMission,
+        joint: f64,
+        now: f64,
+    ) -> Result<Result<(AdmittedPath, f64), AdmissionResult>, RequestError> {
         let robot = &self.robots[place];
         if robot.alarm.is_some() {
             let why = "it is not where it may be".into();
-            return Ok(Some(AdmissionResult::Waiting { by: Some(robot.name.clone()), why }));
+            return Ok(Err(AdmissionResult::Waiting { by: Some(robot.name.clone()), why }));
         }
         let rejoined = robot.course.rejoined(robot.arc_length, joint, &mission.shapes, robot.rest);
         let (course, dropped, rest) = rejoined.map_err(RequestError::invalid)?;
@@ -259,13 +252,11 @@ impl Supervisor {
         let shifted = |length: f64| (length - dropped).max(0.0).min(course.length());
         let (at, told) = (shifted(robot.arc_length), shifted(robot.notified_limit));
         if let Some(why) = self.pause_reason() {
-            self.counts.refused += 1;
-            return Ok(Some(AdmissionResult::Waiting { by: None, why }));
+            return Ok(Err(AdmissionResult::Waiting { by: None, why }));
         }
         if let Some(closure) = self.closed_on(&course, &body, at, told) {
             let why = format!("{closure} is closed");
-            self.counts.refused += 1;
-            return Ok(Some(AdmissionResult::Waiting { by: None, why }));
+            return Ok(Err(AdmissionResult::Waiting { by: None, why }));
         }
         let own = Progress { at: Interval::new(at, told), stop: told };
         let motion = course.motion(&body).map_err(turning)?;
@@ -285,9 +276,8 @@ impl Supervisor {
         drop(fleet);
         let Err(refused) = admission else {
             let path = AdmittedPath { course: course.clone(), rest, body: body.clone(), any_heading };
-            return self.commit(place, mission, path, dropped).map(|()| None);
+            return Ok(Ok((path, dropped)));
         };
-        self.counts.refused += 1;
         let name = |agent: usize| self.robots.get(agent).map_or_else(String::new, |robot| robot.name.clone());
         let (by, why) = match refused {
             AdmissionError::Blocked { by, .. } => (name(by), format!("{} is in the way, whoever goes first", name(by))),
@@ -299,7 +289,7 @@ impl Supervisor {
             }
             refused => return Err(RequestError::invalid(refused)),
         };
-        Ok(Some(AdmissionResult::Waiting { by: Some(by), why }))
+        Ok(Err(AdmissionResult::Waiting { by: Some(by), why }))
     }
 
     /// Makes the admitted path that of the robot.
@@ -391,53 +381,13 @@ impl Supervisor {
             notes: robot.notes.clone(),
         })
     }
-
-    /// Tries the mission that has been due for the longest time; of several, the oldest. (Trying the oldest of all due missions
-    /// would starve a young one while many wait, even if it was the only one that could be admitted.)
-    pub(super) fn retry(&mut self, now: f64) {
-        let time = |robot: &SupervisedRobot| self.tries.get(&robot.name).map_or(f64::NEG_INFINITY, |last| last.next);
-        let waiting = self.robots.iter().enumerate().filter_map(|(place, robot)| {
-            let turn = robot.waiting.as_ref()?.turn;
-            Some((time(robot), turn, place)).filter(|(time, ..)| *time <= now)
-        });
-        let first = waiting.min_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1))).map(|(.., place)| place);
-        let waiting = first.and_then(|place| Some((place, self.robots[place].waiting.clone()?)));
-        let Some((place, waiting)) = waiting else { return };
-        let robot = &self.robots[place];
-        let name = robot.name.clone();
-        let possible = match waiting.path == robot.path {
-            true => joint(robot, waiting.after).and_then(|joint| self.attempt(place, &waiting, joint, now)),
-            false => Err(RequestError::NoSuchPath { path: robot.path }),
-        };
-        match possible {
-            Ok(None) => {}
-            Ok(Some(verdict)) => {
-                let last = self.tries.entry(name.clone()).or_default();
-                last.pause = (2.0 * last.pause).clamp(PAUSE[0], PAUSE[1]);
-                last.next = now + last.pause;
-                if last.last.as_ref() != Some(&verdict)
-                    && let AdmissionResult::Waiting { by, why } = verdict.clone()
-                {
-                    self.events.push(SupervisorEvent::Waiting { robot: name, mission: waiting.mission, by, why });
-                }
-                last.last = Some(verdict);
-            }
-            Err(fault) => {
-                self.robots[place].waiting = None;
-                SupervisedRobot::outlives(&mut self.robots[place].past, waiting.mission.clone());
-                self.tries.remove(&name);
-                self.entries.push(JournalEntry::Waiting { robot: name.clone(), waiting: None });
-                self.drops(&name, waiting.mission, CancelCause::Impossible(fault.to_string()));
-            }
-        }
-    }
 }
 
 /// Length of a robot's path at which a new path begins, corrected for rounding.
 ///
 /// # Errors
 /// [`RequestError`] if no path can begin there.
-fn joint(robot: &SupervisedRobot, after: f64) -> Result<f64, RequestError> {
+pub(super) fn joint(robot: &SupervisedRobot, after: f64) -> Result<f64, RequestError> {
     let length = robot.course.length();
     if !(-JOINT..=length + JOINT).contains(&after) {
         return Err(RequestError::invalid(format!("after: {after} is out of range; the path is {length} m long")));

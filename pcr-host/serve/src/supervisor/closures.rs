@@ -144,7 +144,7 @@ impl Supervisor {
         self.closure_revision += 1;
         self.hazards = true;
         // Missions that have waited for it are tried now.
-        self.tries.values_mut().for_each(super::admission::AdmissionRetry::hurry);
+        self.tries.values_mut().for_each(super::waiting_missions::AdmissionRetry::hurry);
         Ok(true)
     }
 

@@ -2,7 +2,7 @@
 //! that reserves stays free for him; nobody is granted anything more, and no mission is admitted. Who is added, or comes back, is paused, too.
 
 use super::Supervisor;
-use super::admission::AdmissionRetry;
+use super::waiting_missions::AdmissionRetry;
 use crate::event::SupervisorEvent;
 use crate::journal_entry::JournalEntry;
 use crate::request_error::RequestError;

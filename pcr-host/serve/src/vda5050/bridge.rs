@@ -259,6 +259,7 @@ impl Vda5050Bridge {
             let lane = &mut self.lanes[place];
             lane.follow_limits(supervisor);
             lane.pause(supervisor, now);
+            lane.follow_wait(supervisor, now);
             if is_known {
                 lane.release(supervisor, now);
             }

@@ -5,7 +5,9 @@
 //! base may end in the middle of an edge. Reports of the vehicle are sent to the manager with the manager's numbers.
 
 mod absence;
+mod action_states;
 mod actions;
+mod base_end;
 mod interim;
 mod job;
 mod journal_notes;
@@ -26,6 +28,8 @@ pub use job::ActiveOrder;
 
 use crate::robot::RobotTraits;
 use crate::supervisor::{JournalError, PauseAbility, StandingPlace, Supervisor};
+use action_states::UnsentActions;
+use base_end::OrderWait;
 use interim::Interim;
 use journal_notes::noted;
 use pause::VehiclePauses;
@@ -126,6 +130,8 @@ pub struct VehicleAdapter {
     /// The newest state was written at this time or before \[s\].
     heard_at: f64,
     job: Option<ActiveOrder>,
+    /// Actions of the order before that it never gets.
+    unsent: Option<UnsentActions>,
     /// Orders and updates that have come after a restart before its first state.
     early: Vec<(Order, bool)>,
     /// Orders that it had, and actions by which the manager has cancelled orders.
@@ -141,6 +147,8 @@ pub struct VehicleAdapter {
     posts: Vec<OutboundMessage>,
     /// The nodes and edges ahead, as they were last sent to the manager.
     ahead: Option<manager_state::CachedRemaining>,
+    /// Why its order waits, if it does.
+    wait: Option<OrderWait>,
     /// What the vehicle needs, according to its own data: the radius of its disc, or how far it reaches beyond its outline \[m\].
     needs: Option<f64>,
     /// Why it is not certain that it can be paused; `None`: its factsheet says that it can.
@@ -183,6 +191,7 @@ impl VehicleAdapter {
             state,
             heard_at,
             job,
+            unsent: UnsentActions::remembered(robot)?,
             early,
             orders,
             cancels,
@@ -192,6 +201,7 @@ impl VehicleAdapter {
             sent,
             posts,
             ahead: None,
+            wait: None,
             needs,
             pause_ability: Some(PauseAbility::Unknown),
             elsewhere: None,
@@ -309,6 +319,9 @@ impl VehicleAdapter {
             self.note(supervisor, past.key, past.all());
         }
         self.note_pauses(supervisor);
+        if self.unsent.is_some() {
+            self.note_unsent(supervisor);
+        }
         if self.needs.is_some() {
             self.note(supervisor, NEEDS, self.needs);
         }

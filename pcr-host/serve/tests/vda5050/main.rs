@@ -1,6 +1,8 @@
 //! VDA 5050 over a real broker, and what does not need one. The runs with a broker: `.ci/test.sh serve`.
 
 mod absence;
+mod actions;
+mod base_end;
 mod broker;
 mod cancels;
 mod deploy_runs;

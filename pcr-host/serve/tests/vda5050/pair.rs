@@ -7,7 +7,7 @@ use pcr_formats::vda5050::topics::{TopicKind, VehicleId};
 use pcr_formats::vda5050::version::ProtocolVersion;
 use pcr_serve::journal_entry::NullStore;
 use pcr_serve::owned_path::StartPose;
-use pcr_serve::supervisor::Supervisor;
+use pcr_serve::supervisor::{Supervisor, SupervisorConfig};
 use pcr_serve::vda5050::bridge::{self, Vda5050Bridge};
 use pcr_serve::vehicles::simulated_site::profile;
 use pcr_serve::vehicles::vehicle::SimulatedVehicle;
@@ -38,6 +38,8 @@ pub(crate) struct Pair {
     /// What is lost on the way to the vehicle: the next message that this is true of.
     pub(crate) loses: Option<fn(TopicKind, &Value) -> bool>,
     pub(crate) header: u64,
+    /// What was sent to the vehicle.
+    pub(crate) got: Vec<(TopicKind, Value)>,
 }
 
 pub(crate) fn key() -> VehicleId {
@@ -60,11 +62,17 @@ pub(crate) fn restarted(killed: &mut Supervisor) -> (Supervisor, Vda5050Bridge) 
 
 impl Pair {
     pub(crate) fn new() -> Self {
+        Self::of(settings())
+    }
+
+    /// The same with a supervisor that has these settings.
+    pub(crate) fn of(settings: SupervisorConfig) -> Self {
         let start = StartPose { x: 0.0, y: 0.0, heading: 0.0 };
         let vehicle = SimulatedVehicle::new(key(), ProtocolVersion::V2_1, "map", CAN, start, 1);
-        let supervisor = Supervisor::new(settings(), Box::new(NullStore));
+        let supervisor = Supervisor::new(settings, Box::new(NullStore));
         let bridge = bridge_of(&supervisor);
-        let mut own = Self { vehicle, supervisor, bridge, time: 0.0, state: None, loses: None, header: 0 };
+        let (state, loses, got) = (None, None, Vec::new());
+        let mut own = Self { vehicle, supervisor, bridge, time: 0.0, state, loses, header: 0, got };
         own.lasts(1.0);
         assert!(own.supervisor.robot("sim/001").is_ok());
         own
@@ -96,6 +104,7 @@ impl Pair {
                         continue;
                     }
                     self.vehicle.receive(kind, &message.payload);
+                    self.got.push((kind, said));
                 } else if let Some((_, _, TopicKind::State)) = manager.parse(&message.topic) {
                     self.state = Some(serde_json::from_slice(&message.payload).unwrap());
                 }

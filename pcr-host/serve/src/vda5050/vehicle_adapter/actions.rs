@@ -45,7 +45,7 @@ impl VehicleAdapter {
         }
         let (due, held) = self.hold_back(supervisor, actions.to_vec(), now);
         if held.is_none() || !due.is_empty() {
-            self.act(version, due, message.rest);
+            self.act(version, &due, &message.rest);
         }
         repeated.or(held).map_or(Ok(()), Err)
     }
@@ -92,21 +92,19 @@ impl VehicleAdapter {
         id
     }
 
-    /// Sends instant actions of the manager. Those that let the vehicle go on are not sent if it was told to stop since; so they are in a
-    /// message of their own.
-    pub(super) fn act(&mut self, version: ProtocolVersion, actions: Vec<Action>, rest: Map<String, Value>) {
-        let (free, others): (Vec<_>, Vec<_>) =
-            actions.into_iter().partition(|action| action.action_type == "stopPause");
-        let is_free = !free.is_empty();
-        if is_free {
-            let rest = rest.clone();
-            let message = |header| InstantActions { rest, ..InstantActions::new(header, free) };
-            self.post_actions(SendCondition::Free, version, message);
+    /// Sends instant actions of the manager, in their order. Those that let the vehicle go on are not sent if it was told to stop since; so they
+    /// are in messages of their own.
+    pub(super) fn act(&mut self, version: ProtocolVersion, actions: &[Action], rest: &Map<String, Value>) {
+        let is_free = |action: &Action| action.action_type == "stopPause";
+        let mut send = |actions: &[Action]| {
+            let due = if actions.first().is_some_and(is_free) { SendCondition::Free } else { SendCondition::Kept };
+            let message = |header| InstantActions { rest: rest.clone(), ..InstantActions::new(header, actions.to_vec()) };
+            self.post_actions(due, version, message);
+        };
+        if actions.is_empty() {
+            send(actions);
         }
-        if !is_free || !others.is_empty() {
-            let message = |header| InstantActions { rest, ..InstantActions::new(header, others) };
-            self.post_actions(SendCondition::Kept, version, message);
-        }
+        actions.chunk_by(|a, b| is_free(a) == is_free(b)).for_each(send);
     }
 
     /// Sends instant actions to the vehicle.

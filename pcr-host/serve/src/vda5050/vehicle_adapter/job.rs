@@ -167,6 +167,11 @@ impl ActiveOrder {
         if order == self.order.order_id { self.order.place_of(sequence.parse().ok()?) } else { None }
     }
 
+    /// Whether a mission is one of this order.
+    pub(super) fn is_mission(&self, mission: &str) -> bool {
+        self.node_of_mission(mission).is_some()
+    }
+
     /// Index of the node at which the supervisor's path ends; 0 while nothing is admitted.
     pub(super) fn planned(&self, robot: &SupervisedRobot) -> usize {
         robot.mission.as_deref().and_then(|mission| self.node_of_mission(mission)).unwrap_or(0)
@@ -174,7 +179,7 @@ impl ActiveOrder {
 
     /// Whether the supervisor's path is a part of this way.
     pub(super) fn is_admitted(&self, robot: &SupervisedRobot) -> bool {
-        robot.mission.as_deref().and_then(|mission| self.node_of_mission(mission)).is_some()
+        robot.mission.as_deref().is_some_and(|mission| self.is_mission(mission))
     }
 
     /// Index of the node at which the mission ends that waits to be admitted.

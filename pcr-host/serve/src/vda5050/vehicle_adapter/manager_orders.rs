@@ -188,6 +188,7 @@ impl VehicleAdapter {
 
     /// Gives the vehicle this order.
     fn has(&mut self, supervisor: &mut Supervisor, job: ActiveOrder) {
+        self.drop_unsent(supervisor);
         let noted = self.orders.push(&job.order.order_id);
         self.note_past(supervisor, self.orders.key, noted);
         self.note(supervisor, "order", job.given());
@@ -290,7 +291,7 @@ impl VehicleAdapter {
             start: None,
             path,
         };
-        let verdict = supervisor.mission(&proposal, now);
+        let verdict = supervisor.mission_in_parts(&proposal, job.mission_ends(from), now);
         if verdict.map_err(|fault| RejectedOrder::new(OrderRejection::Order, "nodes", fault))? == AdmissionResult::Past
         {
             return Err(was_there());

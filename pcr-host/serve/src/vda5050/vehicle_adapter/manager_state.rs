@@ -176,19 +176,26 @@ impl VehicleAdapter {
     fn translated(&mut self, mut state: State) -> State {
         self.job.iter().for_each(|job| job.name_updates(&mut state.errors));
         let limits = self.limit_errors(&state);
-        let own = self.errors.iter().cloned().chain(self.elsewhere_error()).chain(self.notice_errors());
+        let own = self.errors.iter().cloned().chain(self.elsewhere_error()).chain(self.pause_error());
+        let own = own.chain(self.notice_errors());
         state.errors.extend(own.chain(limits));
-        let Some(job) = self.job.as_ref().filter(|job| job.order.order_id == state.order_id) else { return state };
+        self.add_action_states(&mut state);
+        self.in_manager_numbers(&mut state);
+        self.tell_wait(&mut state);
+        state
+    }
+
+    /// Gives a state the manager's numbers of nodes and updates, and all nodes that are ahead.
+    fn in_manager_numbers(&mut self, state: &mut State) {
+        let Some(job) = self.job.as_ref().filter(|job| job.order.order_id == state.order_id) else { return };
         let sent = job.sent.filter(|sent| sent.update == state.order_update_id).map(|sent| sent.manager);
         if let Some(manager) = job.received.acknowledged.map(|(_, manager)| manager).or(sent) {
             state.order_update_id = manager;
         }
         // A vehicle that has just taken the order may still be at the end of the one before.
-        let place = if job.is_confirmed() { job.passed(&state) } else { Some(0) };
-        let Some(stop) = place.and_then(|place| job.stops.get(place)) else {
-            return state;
-        };
-        let Some(last) = job.order.nodes.get(stop.node) else { return state };
+        let place = if job.is_confirmed() { job.passed(state) } else { Some(0) };
+        let Some(stop) = place.and_then(|place| job.stops.get(place)) else { return };
+        let Some(last) = job.order.nodes.get(stop.node) else { return };
         state.last_node_id.clone_from(&last.node_id);
         state.last_node_sequence_id = last.sequence_id;
         if stop.between
@@ -199,19 +206,18 @@ impl VehicleAdapter {
         }
         // A vehicle without nodes has completed the cancellation, or has dropped the order.
         if state.node_states.is_empty() && (job.cancel.is_some() || job.lost_at.is_some()) {
-            return state;
+            return;
         }
         let waits = state.node_states.iter().any(|node| node.released);
         if self.ahead.as_ref().is_none_or(|ahead| !ahead.is_of(job, stop.node)) {
             self.ahead = Some(CachedRemaining::of(job, stop.node));
         }
-        let Some(ahead) = &self.ahead else { return state };
+        let Some(ahead) = &self.ahead else { return };
         (state.node_states, state.edge_states) = (ahead.nodes.clone(), ahead.edges.clone());
         // Whether more base is needed depends on the base of the manager, not on the part that the vehicle has.
         if let Some(request) = &mut state.new_base_request {
             *request &= waits || !ahead.has_base;
         }
-        state
     }
 }
 

@@ -14,7 +14,9 @@ use super::release::AGAIN;
 use super::{ActiveOrder, VehicleAdapter};
 use crate::owned_path::StartPose;
 use crate::supervisor::Supervisor;
+use pcr_formats::vda5050::order_state::RejectedOrder;
 use pcr_formats::vda5050::state::State;
+use pcr_formats::vda5050::version::OrderRejection;
 
 /// Number of successive states, and time \[s\], after which a vehicle that contradicts its order has lost it or was moved.
 const ASTRAY: (u32, f64) = (3, 2.0);
@@ -86,7 +88,13 @@ impl VehicleAdapter {
         }
         let Some(job) = &self.job else { return };
         let (has_it, is_still) = (job.order.order_id == state.order_id, self.is_still(state));
-        if job.sent.is_none() || job.lost_at.is_some() && !has_it {
+        if job.sent.is_none() {
+            let why = "it was cancelled before the vehicle got it: nothing of it is carried out";
+            let (order, update) = (job.order.order_id.clone(), job.order.update_id);
+            self.reject(&RejectedOrder::new(OrderRejection::Order, "orderId", why), &order, update);
+            return self.reseat(supervisor, state);
+        }
+        if job.lost_at.is_some() && !has_it {
             return self.reseat(supervisor, state);
         }
         if job.was_there() && !has_it {
@@ -145,6 +153,7 @@ impl VehicleAdapter {
         }
         // If it cannot stand there, its former place is kept, so that no other vehicle drives through it.
         if supervisor.reseat(&self.name, start).is_ok() {
+            self.keep_unsent(state);
             (self.job, self.astray) = (None, None);
             self.note_anew(supervisor);
             self.note(supervisor, MAP, map);

@@ -9,12 +9,15 @@ use crate::supervisor::{JournalError, PAUSE, Supervisor};
 use pcr_formats::vda5050::decode::DecodeError;
 use pcr_formats::vda5050::decode::{self, MessageLimits};
 use pcr_formats::vda5050::messages::{Action, InstantActions};
-use pcr_formats::vda5050::state::ActionState;
+use pcr_formats::vda5050::state::{ActionState, ErrorEntry};
 use serde::{Deserialize, Serialize};
 use serde_json::{Map, Value};
 
 /// Key of the note about pauses.
 const NOTE: &str = "pauses";
+
+/// Time between two attempts with a vehicle that refuses to pause, or to go on \[s\]: it keeps the state of each.
+const REFUSED: f64 = 30.0;
 
 /// Largest number of `stopPause` actions that are held back: a manager may repeat them for hours.
 const MOST: usize = 16;
@@ -42,6 +45,8 @@ pub(super) struct VehiclePauses {
     asked: Option<PauseRequest>,
     /// The last request of the manager, to pause or to go on, and its time \[s\]: states show it only later.
     wish: Option<(bool, f64)>,
+    /// Whether the vehicle has refused our last request to pause (`true`), or to go on.
+    refused: Option<bool>,
     kept: StoredPauses,
     /// Whether an action was taken back since the journal was last told.
     is_unnoted: bool,
@@ -80,13 +85,15 @@ impl VehicleAdapter {
         if let Some(version) = self.version.filter(|_| !stops && !self.pauses.kept.withheld_actions.is_empty()) {
             let held = std::mem::take(&mut self.pauses.kept.withheld_actions);
             (self.pauses.kept.pauses_of_others, self.pauses.wish) = (false, Some((false, now)));
-            self.act(version, held, Map::new());
+            self.act(version, &held, &Map::new());
         }
         if std::mem::take(&mut self.pauses.is_unnoted) || self.pauses.kept != before {
             self.note_pauses(supervisor);
         }
         let others = self.pauses.kept.pauses_of_others;
         let ends = self.pauses.asked.as_ref().filter(|_| !stops).and_then(|asked| self.still_ends(asked, now));
+        self.note_refusal();
+        let again = if self.pauses.refused.is_some() { REFUSED } else { AGAIN };
         match &self.pauses.asked {
             // A pause of others is ended by them.
             None if !(stops || said && !others && self.has_paused()) => {}
@@ -99,11 +106,40 @@ impl VehicleAdapter {
             Some(asked) if !asked.stops && !stops && ends.is_none() && (!said || self.has_done(&asked.id)) => {
                 self.pauses.asked = None;
             }
-            Some(asked) if asked.stops == stops && (said == stops || now - asked.at < AGAIN) => {}
+            Some(asked) if asked.stops == stops && (said == stops || now - asked.at < again) => {}
             // It does not say whether it is paused.
             Some(asked) if asked.stops && stops && !self.tells_pauses() && self.has_done(&asked.id) => {}
             _ => self.ask_pause(stops, ends, now),
         }
+    }
+
+    /// Notes whether the vehicle refuses our last request, until it does what was asked or something else is asked. It is told in the log once.
+    fn note_refusal(&mut self) {
+        let said = self.says_paused();
+        let Some(asked) = self.pauses.asked.as_ref().filter(|asked| asked.stops != said) else {
+            self.pauses.refused = None;
+            return;
+        };
+        self.pauses.refused.take_if(|stops| *stops != asked.stops);
+        let has_failed = self.state.as_ref().is_some_and(|state| state.action(&asked.id) == Some("FAILED"));
+        if has_failed && self.pauses.refused.is_none() {
+            self.pauses.refused = Some(asked.stops);
+            self.remarks.extend(self.refusal_of_pause().map(str::to_owned));
+            self.mirror();
+        }
+    }
+
+    /// What the vehicle refuses, in words.
+    fn refusal_of_pause(&self) -> Option<&'static str> {
+        Some(match self.pauses.refused? {
+            true => "it has to stop, and refuses to pause: it may go on to the end of what was released; stop it by hand",
+            false => "it may go on, and refuses to end its pause: let it go on by hand",
+        })
+    }
+
+    /// The same as an error in states.
+    pub(super) fn pause_error(&self) -> Option<ErrorEntry> {
+        Some(ErrorEntry::warning("pauseRefused", self.refusal_of_pause()?.to_owned(), &[("vehicle", &self.name)]))
     }
 
     fn ask_pause(&mut self, stops: bool, ends: Option<(String, f64)>, now: f64) {

@@ -266,7 +266,7 @@ impl VehicleAdapter {
         with: PositionSource,
     ) -> Result<(), RequestError> {
         supervisor.add(&self.name, self.profile.abilities.clone(), start)?;
-        (self.job, self.astray) = (None, None);
+        (self.job, self.astray, self.unsent) = (None, None, None);
         self.note_anew(supervisor);
         self.note(supervisor, MAP, map);
         self.doubts(supervisor, with == PositionSource::Doubtful);
