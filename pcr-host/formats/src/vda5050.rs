@@ -10,6 +10,7 @@
 //! header       header of every message
 //! order        orders
 //! state        states, positions
+//! zone_set     zones
 //! messages     the other messages
 //! order_state  an order as its receiver keeps it, updates stitched  OrderState
 //! ```
@@ -24,3 +25,4 @@ pub mod timestamp;
 pub mod topics;
 mod validate;
 pub mod version;
+pub mod zone_set;

@@ -2,6 +2,7 @@
 
 use crate::owned_path::{OwnedPath, PathElement, StartPose};
 use crate::page_layout::PageLayout;
+use pcr_core::Interval;
 use pcr_formats::import::ElementId;
 use serde::{Deserialize, Serialize};
 
@@ -61,6 +62,27 @@ pub struct SpeedLimit {
     pub length: [f64; 2],
     /// Largest speed there \[m/s\].
     pub speed: f64,
+}
+
+/// The lengths of a path on which a closed area is; `None`: unknown, so it counts as where the robot is.
+pub(crate) type AreaLengths = Option<Vec<Interval<f64>>>;
+
+/// The closed areas on a robot's path.
+#[derive(Clone, Debug)]
+pub(crate) struct AreasOnPath {
+    /// Number of the path, and revision of the areas.
+    pub(crate) of: (u64, u64),
+    /// Those that are on it, by name.
+    pub(crate) shut: Vec<(String, AreaLengths)>,
+    /// Where the first one ahead begins, when it was last looked \[m\].
+    pub(crate) limit: Option<f64>,
+}
+
+impl AreasOnPath {
+    /// The name of an area, by its index here.
+    pub(crate) fn name(&self, index: usize) -> Option<&str> {
+        self.shut.get(index).map(|(name, _)| name.as_str())
+    }
 }
 
 /// A request to close an area: a path, or what has an id in the layout.

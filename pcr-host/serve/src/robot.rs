@@ -1,6 +1,6 @@
 //! The state of a robot: its abilities, its path, its place on the path, and how far it has been allowed to go.
 
-use crate::closed_area::SpeedLimit;
+use crate::closed_area::{AreasOnPath, SpeedLimit};
 use crate::owned_path::{OwnedPath, PathElement, PathRounding};
 use pcr_core::{Interval, InvalidInput, Motion, MovementAuthority, Progress};
 use pcr_formats::footprint::Footprint;
@@ -284,12 +284,16 @@ pub struct SupervisedRobot {
     pub stopped: Option<String>,
     /// Name of the closed area before which it waits.
     pub(crate) closure: Option<String>,
+    /// The closed areas on its path; `None` before they were looked for.
+    pub(crate) areas: Option<AreasOnPath>,
     /// Where its speed is limited on its path, as it was told.
     pub(crate) speed_limits: Vec<SpeedLimit>,
     /// The number of the path and the revision of the closures of which these are; `None`: nothing was told since the start.
     pub(crate) limits_at: Option<(u64, u64)>,
     /// Its waiting mission, if there is one.
     pub waiting: Option<PendingMission>,
+    /// What it does where it stands, in words, as it says.
+    pub(crate) doing: Option<String>,
     /// Whether a person has said that it is away.
     pub(crate) away: bool,
     /// Whether it was away, was added since, and it has not been looked yet whether it stands where others may go.
@@ -339,9 +343,11 @@ impl SupervisedRobot {
             alarm: None,
             stopped: None,
             closure: None,
+            areas: None,
             speed_limits: Vec::new(),
             limits_at: None,
             waiting: None,
+            doing: None,
             away: false,
             returned: false,
             silent: false,

@@ -6,6 +6,7 @@
 mod absence;
 mod admission;
 mod alarms;
+mod areas;
 mod authority;
 mod closures;
 mod deadlock_report;
@@ -16,6 +17,7 @@ mod positions;
 mod restore;
 mod robot_notes;
 mod waiting_missions;
+mod zones;
 
 pub use absence::{StandingPlace, UnplacedVehicle};
 pub use admission::{AdmissionResult, MissionRequest};
@@ -23,6 +25,7 @@ pub use closures::ClosureImpact;
 pub use fleet_pause::{PAUSE, PauseAbility, PauseImpact};
 pub use positions::PositionReport;
 pub use restore::{JournalError, JournalState};
+pub use zones::ZoneArea;
 
 use crate::event::{CancelCause, SupervisorEvent};
 use crate::journal_entry::{JournalEntry, JournalStore};
@@ -128,7 +131,12 @@ pub struct Supervisor {
     unplaced: BTreeMap<String, UnplacedVehicle>,
     /// Areas that are closed, by name.
     closures: BTreeMap<String, closures::ClosedPath>,
-    /// A number that changes whenever an area is closed or opened.
+    /// Areas of single robots, by the name of the robot.
+    zones: BTreeMap<String, Vec<areas::Area>>,
+    /// Whether any area is closed, and whether the speed is limited in any.
+    is_any_shut: bool,
+    is_any_slow: bool,
+    /// A number that changes whenever an area begins or ends.
     closure_revision: u64,
     /// Whether the whole fleet is paused.
     paused: bool,
@@ -176,6 +184,9 @@ impl Supervisor {
             away: BTreeSet::new(),
             unplaced: BTreeMap::new(),
             closures: BTreeMap::new(),
+            zones: BTreeMap::new(),
+            is_any_shut: false,
+            is_any_slow: false,
             closure_revision: 0,
             paused: false,
             pause_abilities: BTreeMap::new(),

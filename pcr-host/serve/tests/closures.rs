@@ -335,3 +335,34 @@ fn areas_are_closed_by_the_ids_of_the_layout() {
     let answer = handle(&mut own, both.to_string().as_bytes(), 0.0, 0.0).answer;
     assert!(answer["error"]["message"].as_str().unwrap().starts_with("a closure is of one place"), "{answer}");
 }
+
+/// Each hold was a write of its own as long as any area was closed. The journal has a hold before it is told, and none beyond the area.
+#[test]
+fn the_journal_is_not_written_for_each_hold_while_an_area_is_closed() {
+    let writes = |closed: &[ClosedArea]| {
+        let disc = Disc::new();
+        let mut own = one(&disc);
+        own.mission(&straight("1", 200.0), 0.0).unwrap();
+        own.settle(0.0).unwrap();
+        for area in closed {
+            own.close(area.clone()).unwrap();
+        }
+        own.settle(0.0).unwrap();
+        let (begin, holds) = (own.counts().writes, own.counts().holds);
+        for step in 1..=300_u32 {
+            let hold = own.robot("east").unwrap().granted;
+            is_at(&mut own, (0.25 * f64::from(step)).min(hold), f64::from(step));
+            let robot = own.robot("east").unwrap();
+            // What a restart would count as told.
+            let state =
+                Supervisor::restored(SupervisorConfig::default(), disc.entries(), Box::new(Disc::new())).unwrap();
+            let kept = state.robot("east").unwrap().notified_limit;
+            assert!(kept >= robot.granted, "{kept} {}", robot.granted);
+            assert!(closed.is_empty() || kept <= 104.26, "{kept}");
+        }
+        (own.counts().writes - begin, own.counts().holds - holds)
+    };
+    let (open, closed) = (writes(&[]), writes(&[area(100.0, 0.5)]));
+    assert!(open.1 > 100 && open.0 < open.1 / 3, "{open:?}");
+    assert!(closed.0 <= open.0 + 3, "{closed:?} {open:?}");
+}

@@ -7,6 +7,12 @@ const SEEDS: u64 = if cfg!(debug_assertions) { 6 } else { 24 };
 
 fn run(seed: u64, trouble: Trouble, restarts: f64) -> World {
     let mut world = World::new(seed, 2 + (seed % 9) as usize, trouble);
+    runs_on(&mut world, seed, restarts);
+    world
+}
+
+/// Lets it run, and then come to rest.
+fn runs_on(world: &mut World, seed: u64, restarts: f64) {
     while world.now < 120.0 {
         world.step();
         if world.dice().unit() < restarts {
@@ -28,7 +34,6 @@ fn run(seed: u64, trouble: Trouble, restarts: f64) -> World {
         assert!(world.now < 1200.0, "seed {seed}: {late:?} do not arrive");
     }
     world.certify();
-    world
 }
 
 fn runs(trouble: Trouble, restarts: f64) {
@@ -52,6 +57,22 @@ fn fleets_with_good_messages() {
 #[test]
 fn fleets_with_messages_lost_late_and_repeated() {
     runs(Trouble { lost: 0.3, late: 5.0, stops: 0.005 }, 0.0);
+}
+
+/// Whatever part of a mission is admitted, its robot comes to the end of that, and nobody touches it there.
+#[test]
+fn fleets_whose_missions_are_admitted_in_parts() {
+    let mut parts = 0;
+    for seed in 0..SEEDS {
+        let trouble = Trouble { lost: 0.1, late: 1.0, stops: 0.002 };
+        let mut world = World::new(seed, 4 + (seed % 7) as usize, trouble);
+        world.in_parts = true;
+        runs_on(&mut world, seed, 0.005);
+        assert_eq!(world.supervisor.counts().alarms, 0);
+        parts += world.parts;
+    }
+    println!("{parts} parts");
+    assert!(parts > SEEDS as u32);
 }
 
 #[test]

@@ -10,7 +10,7 @@ use pcr_serve::journal::{self, ParsedFrames, frame};
 use pcr_serve::journal_entry::{JournalEntry, JournalStore};
 use pcr_serve::owned_path::{OwnedPath, PathElement, StartPose};
 use pcr_serve::request_error::RequestError;
-use pcr_serve::robot::RobotTraits;
+use pcr_serve::robot::{MissionEnd, RobotTraits};
 use pcr_serve::supervisor::{AdmissionResult, MissionRequest, PositionReport, Supervisor, SupervisorConfig};
 use std::f64::consts::PI;
 use std::io;
@@ -235,6 +235,9 @@ pub(crate) struct World {
     /// Certified intervals of time.
     pub(crate) steps: usize,
     pub(crate) open: bool,
+    /// Whether missions may be admitted in parts, and number of parts that were.
+    pub(crate) in_parts: bool,
+    pub(crate) parts: u32,
     pub(crate) proposals: u32,
     pub(crate) waits: u32,
     pub(crate) kills: u32,
@@ -294,6 +297,8 @@ impl World {
             half,
             steps: 0,
             open: true,
+            in_parts: false,
+            parts: 0,
             proposals: 0,
             waits: 0,
             kills: 0,
@@ -373,10 +378,17 @@ impl World {
             start: Some(start),
             path,
         };
-        let verdict = self.supervisor.mission(&proposal, self.now).unwrap();
-        // To ask again changes nothing.
-        let again = self.supervisor.mission(&proposal, self.now).unwrap();
-        assert_eq!(verdict, again);
+        let verdict = if self.in_parts {
+            let end = |shapes| MissionEnd { mission: format!("part {}.{shapes}", self.proposals), shapes };
+            let ends = (1..proposal.path.len()).map(end).collect();
+            self.supervisor.mission_in_parts(&proposal, ends, self.now).unwrap()
+        } else {
+            let verdict = self.supervisor.mission(&proposal, self.now).unwrap();
+            // To ask again changes nothing.
+            let again = self.supervisor.mission(&proposal, self.now).unwrap();
+            assert_eq!(verdict, again);
+            verdict
+        };
         self.waits += u32::from(matches!(verdict, AdmissionResult::Waiting { .. }));
     }
 
@@ -429,6 +441,8 @@ impl World {
             // What is about all is for people.
             let Some(name) = event.robot() else { continue };
             let admitted = matches!(event, SupervisorEvent::Admitted { .. });
+            let is_part = |mission: &str| mission.starts_with("part");
+            self.parts += u32::from(matches!(&event, SupervisorEvent::Admitted { mission, .. } if is_part(mission)));
             let robot = self.supervisor.robot(name).unwrap();
             let course = admitted.then(|| (robot.origin, robot.course.clone()));
             self.post(Mail::Event(event, course));

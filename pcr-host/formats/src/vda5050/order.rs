@@ -103,10 +103,23 @@ pub struct OrderEdge {
     pub rest: Map<String, Value>,
 }
 
+/// The field with the room beside an edge in which a vehicle may leave its way, since 2.1.
+const CORRIDOR: &str = "corridor";
+
 /// The fields with the largest speed on an edge: up to 2.1, and in 3.0.
 const MAX_SPEED: [&str; 2] = ["maxSpeed", "maximumSpeed"];
 
 impl OrderEdge {
+    /// Whether a vehicle may leave its way on it.
+    pub fn has_corridor(&self) -> bool {
+        self.rest.get(CORRIDOR).is_some_and(|corridor| !corridor.is_null())
+    }
+
+    /// Makes it one on which a vehicle keeps to its way.
+    pub fn remove_corridor(&mut self) {
+        self.rest.remove(CORRIDOR);
+    }
+
     /// The largest speed on it \[m/s\], if it says one in the name of any edition.
     pub fn max_speed(&self) -> Option<f64> {
         MAX_SPEED.iter().filter_map(|name| self.rest.get(*name)?.as_f64()).reduce(f64::min)

@@ -254,7 +254,7 @@ impl Supervisor {
         if let Some(why) = self.pause_reason() {
             return Ok(Err(AdmissionResult::Waiting { by: None, why }));
         }
-        if let Some(closure) = self.closed_on(&course, &body, at, told) {
+        if let Some(closure) = self.closed_on(&robot.name, &course, &body, [at, told]) {
             let why = format!("{closure} is closed");
             return Ok(Err(AdmissionResult::Waiting { by: None, why }));
         }

@@ -22,8 +22,8 @@ pub(super) enum LimitCause {
     Robot(usize),
     /// A vehicle that has not said where it stands, by its index among those.
     Unplaced(usize),
-    /// A closed area, by its index among those.
-    Closed(usize),
+    /// A closed area, by its index among those on the path of the robot.
+    Area(usize),
 }
 
 impl Default for LimitCause {
@@ -43,7 +43,7 @@ impl AlarmLimit {
 impl Supervisor {
     /// The limits of all robots; robots that have been allowed to go beyond are stopped. Empty if there is no alarm.
     pub(super) fn limits(&mut self, now: f64) -> Vec<AlarmLimit> {
-        if !self.hazards {
+        if !self.hazards && !self.is_any_shut {
             return Vec::new();
         }
         // A robot whose limit is no further than this beyond its hold waits for it \[m\].
@@ -56,7 +56,6 @@ impl Supervisor {
         self.unsaid(&mut limits);
         self.closed_areas(&mut limits);
         self.hazards = self.robots.iter().any(|robot| robot.alarm.is_some())
-            || !self.closures.is_empty()
             || self.paused
             || self.unplaced.values().any(|vehicle| !vehicle.places.is_empty());
         for (place, limit) in limits.iter().enumerate() {
@@ -68,16 +67,20 @@ impl Supervisor {
             let by = by.and_then(|_| match limit.by {
                 LimitCause::Robot(by) => Some(self.robots[by].name.clone()),
                 LimitCause::Unplaced(by) => self.unplaced.keys().nth(by).cloned(),
-                LimitCause::Closed(by) => self.closures.keys().nth(by).cloned(),
+                LimitCause::Area(index) => robot.areas.as_ref()?.name(index).map(str::to_owned),
             });
+            // Closed areas are looked at as long as there are any.
+            let is_hazard = by.is_some() && !matches!(limit.by, LimitCause::Area(_));
             // That one is to be known first: it has to go on being kept away from when the pause ends.
             let by = by.or_else(|| (self.paused && !robot.away).then(|| PAUSE.to_owned()));
             // It waits there once it has come up to it.
             let closure = match (limit.arc_length, limit.by) {
-                (Some(at), LimitCause::Closed(by)) if by_it(robot, at) => self.closures.keys().nth(by).cloned(),
+                (Some(at), LimitCause::Area(index)) if by_it(robot, at) => {
+                    robot.areas.as_ref().and_then(|areas| areas.name(index)).map(str::to_owned)
+                }
                 _ => None,
             };
-            self.hazards |= by.is_some();
+            self.hazards |= is_hazard;
             let robot = &mut self.robots[place];
             let name = robot.name.clone();
             match (&robot.stopped, &by) {

@@ -108,7 +108,8 @@ impl Supervisor {
             .filter(|_| !self.hazards && !robot.away)
             .and_then(|wait| wait.hold.length(robot.course.length()));
         bound.map_or(robot.notified_limit, |bound| {
-            bound.min(robot.granted + self.settings.persisted_reserve).max(robot.notified_limit)
+            let spare = robot.granted + self.settings.persisted_reserve;
+            bound.min(spare).min(self.area_limit(robot)).max(robot.notified_limit)
         })
     }
 

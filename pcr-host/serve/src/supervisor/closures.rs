@@ -5,17 +5,15 @@
 //! drives on. Whoever holds authority into it keeps that, and is stopped: if it comes to rest before the area it waits there, and if it cannot,
 //! it drives through as soon as it is in it.
 
-use super::alarms::{AlarmLimit, LimitCause};
+use super::areas::{Area, entry};
+use super::waiting_missions::AdmissionRetry;
 use super::{PAUSE, Supervisor};
-use crate::closed_area::{ClosedArea, SpeedLimit};
-use crate::event::SupervisorEvent;
+use crate::closed_area::{AreaLengths, ClosedArea};
 use crate::journal_entry::JournalEntry;
-use crate::owned_path::{FAR, OwnedPath};
+use crate::owned_path::FAR;
 use crate::request_error::RequestError;
-use crate::robot::{ROOM, SupervisedRobot};
-use pcr_core::{Ecm, Interval};
+use crate::robot::SupervisedRobot;
 use pcr_formats::scenario::label;
-use pcr_planning::fleet::ConvexBody;
 use serde::Serialize;
 
 /// Least and largest speed to which an area may be limited \[m/s\].
@@ -37,7 +35,7 @@ pub struct ClosureImpact {
 #[derive(Clone, Debug)]
 pub(super) struct ClosedPath {
     pub(super) area: ClosedArea,
-    courses: Vec<OwnedPath>,
+    pub(super) is: Area,
 }
 
 impl ClosedPath {
@@ -57,42 +55,15 @@ impl ClosedPath {
             )));
         }
         let courses = area.courses().map_err(RequestError::invalid)?;
-        for course in &courses {
-            course.motion(&ConvexBody::Disc(area.radius)).map_err(RequestError::invalid)?;
-        }
-        Ok(Self { area, courses })
+        let is = Area::along(area.name.clone(), area.speed, courses, area.radius)?;
+        Ok(Self { area, is })
     }
+}
 
-    /// The lengths of a path on which a body touches the area; `None` if they cannot be computed.
-    pub(super) fn lengths(&self, course: &OwnedPath, body: &ConvexBody) -> Option<Vec<Interval<f64>>> {
-        let disc = ConvexBody::Disc(self.area.radius);
-        let mut lengths = Vec::new();
-        for own in &self.courses {
-            let fleet = [course.motion(body).ok()?, own.motion(&disc).ok()?];
-            let ecm = Ecm::grown(&fleet).ok()?;
-            lengths.extend(ecm.pair(&fleet, 0, 1).ok()?.map(|region| region.length()));
-        }
-        Some(lengths)
-    }
-
-    /// Whether nobody may enter.
-    fn is_shut(&self) -> bool {
-        self.area.speed.is_none()
-    }
-
-    /// The length of a robot's path at which it would come into the area, from where it is; `None` if it never does, or if it is in it.
-    /// Whatever cannot be computed is as near as the robot.
-    fn entry(&self, robot: &SupervisedRobot) -> Option<f64> {
-        let Some(lengths) = self.lengths(&robot.course, &robot.body) else { return Some(robot.arc_length) };
-        let ahead = lengths.iter().filter(|length| length.lo > robot.arc_length);
-        ahead.map(|length| length.lo).reduce(f64::min)
-    }
-
-    /// Whether a robot is in the area, as far as it has certainly come.
-    fn contains(&self, robot: &SupervisedRobot) -> bool {
-        let lengths = self.lengths(&robot.course, &robot.body).unwrap_or_default();
-        lengths.iter().any(|length| length.lo <= robot.arc_length && robot.arc_length <= length.hi)
-    }
+/// Whether a robot is in an area, as far as it has certainly come.
+fn contains(lengths: &AreaLengths, robot: &SupervisedRobot) -> bool {
+    let mut lengths = lengths.iter().flatten();
+    lengths.any(|length| length.lo <= robot.arc_length && robot.arc_length <= length.hi)
 }
 
 impl Supervisor {
@@ -114,15 +85,15 @@ impl Supervisor {
             None => {
                 self.entries.push(JournalEntry::Closed(closed.area.clone()));
                 self.closures.insert(closed.area.name.clone(), closed.clone());
-                self.closure_revision += 1;
-                self.hazards = true;
+                self.areas_changed();
             }
         }
         let mut impact = ClosureImpact::default();
         for robot in &self.robots {
-            let list = match closed.entry(robot) {
-                _ if closed.contains(robot) => &mut impact.through,
-                Some(entry) if closed.is_shut() && entry < robot.notified_limit => &mut impact.stopped,
+            let lengths = closed.is.lengths(&robot.course, &robot.body);
+            let list = match entry(&lengths, robot) {
+                _ if contains(&lengths, robot) => &mut impact.through,
+                Some(entry) if closed.is.is_shut() && entry < robot.notified_limit => &mut impact.stopped,
                 Some(_) => &mut impact.before,
                 None => continue,
             };
@@ -141,86 +112,14 @@ impl Supervisor {
             return Ok(false);
         }
         self.entries.push(JournalEntry::Opened { closure: name.into() });
-        self.closure_revision += 1;
-        self.hazards = true;
+        self.areas_changed();
         // Missions that have waited for it are tried now.
-        self.tries.values_mut().for_each(super::waiting_missions::AdmissionRetry::hurry);
+        self.tries.values_mut().for_each(AdmissionRetry::hurry);
         Ok(true)
     }
 
     /// The closed areas, by name.
     pub fn closures(&self) -> impl Iterator<Item = &ClosedArea> {
         self.closures.values().map(|closed| &closed.area)
-    }
-
-    /// The first closed area into which a path leads beyond what a robot has been allowed already, except where the robot is in it.
-    pub(super) fn closed_on(&self, course: &OwnedPath, body: &ConvexBody, at: f64, told: f64) -> Option<&str> {
-        let leads_into = |closed: &&ClosedPath| match closed.lengths(course, body) {
-            Some(lengths) => lengths.iter().any(|length| length.lo > at && length.lo >= told - ROOM),
-            None => true,
-        };
-        self.closures
-            .values()
-            .filter(|closed| closed.is_shut())
-            .find(leads_into)
-            .map(|closed| closed.area.name.as_str())
-    }
-
-    /// Limits because of closed areas.
-    pub(super) fn closed_areas(&self, limits: &mut [AlarmLimit]) {
-        for (index, closed) in self.closures.values().enumerate().filter(|(_, closed)| closed.is_shut()) {
-            for (robot, limit) in self.robots.iter().zip(limits.iter_mut()) {
-                if let Some(entry) = closed.entry(robot) {
-                    limit.lower(entry - ROOM, LimitCause::Closed(index));
-                }
-            }
-        }
-    }
-
-    /// The limits of the speed on a path, by name and length. Where it cannot be computed, all of the path is limited.
-    pub(crate) fn speed_limits(&self, course: &OwnedPath, body: &ConvexBody) -> Vec<SpeedLimit> {
-        let limits = self.closures.values().filter_map(|closed| Some((closed, closed.area.speed?)));
-        let limits = limits.flat_map(|(closed, speed)| {
-            let all = || vec![Interval::new(0.0, course.length())];
-            let lengths = closed.lengths(course, body).unwrap_or_else(all);
-            let limit = move |length: Interval<f64>| SpeedLimit {
-                closure: closed.area.name.clone(),
-                length: [length.lo.max(0.0), length.hi.min(course.length())],
-                speed,
-            };
-            lengths.into_iter().map(limit)
-        });
-        limits.collect()
-    }
-
-    /// A number that changes whenever an area is closed or opened.
-    pub(crate) fn closure_revision(&self) -> u64 {
-        self.closure_revision
-    }
-
-    /// Whether the speed is limited anywhere.
-    pub(crate) fn limits_speed(&self) -> bool {
-        self.closures.values().any(|closed| !closed.is_shut())
-    }
-
-    /// Tells robots where their speed is limited, before they get any authority there: on a new path, and when a limit begins or ends.
-    pub(super) fn tell_speed_limits(&mut self) {
-        let limits_any = self.limits_speed();
-        for place in 0..self.robots.len() {
-            let robot = &self.robots[place];
-            let known = (robot.path, self.closure_revision);
-            if robot.limits_at == Some(known) || !limits_any && robot.speed_limits.is_empty() {
-                continue;
-            }
-            let limits = self.speed_limits(&robot.course, &robot.body);
-            let is_new_path = robot.limits_at.is_none_or(|(path, _)| path != robot.path);
-            let is_news = if is_new_path { !limits.is_empty() } else { limits != robot.speed_limits };
-            if is_news {
-                let (robot, path, limits) = (robot.name.clone(), robot.path, limits.clone());
-                self.events.push(SupervisorEvent::Limits { robot, path, limits });
-            }
-            let robot = &mut self.robots[place];
-            (robot.speed_limits, robot.limits_at) = (limits, Some(known));
-        }
     }
 }

@@ -58,6 +58,10 @@ impl Supervisor {
                 )
             }
             _ if robot.away => return,
+            (true, _) if robot.doing.is_some() => {
+                let doing = robot.doing.as_deref().unwrap_or_default();
+                format!("{} stands at {:.2} m, and {doing}", robot.name, robot.arc_length)
+            }
             (true, _) => {
                 format!("{} is at {:.2} m, and may go to {:.2} m", robot.name, robot.arc_length, robot.notified_limit)
             }

@@ -111,6 +111,13 @@ impl Supervisor {
         Ok(())
     }
 
+    /// Takes what a robot does where it stands, in words; `None`: nothing that would keep it. If it does not advance, this is the reason.
+    pub(crate) fn set_doing(&mut self, name: &str, doing: Option<String>) {
+        if let Ok(place) = self.robot_index(name) {
+            self.robots[place].doing = doing;
+        }
+    }
+
     /// The first time that it was told: what is in the journal that it was restored from is older.
     pub(super) fn begun(&mut self, now: f64) -> f64 {
         *self.begun.get_or_insert(now)

@@ -152,6 +152,7 @@ impl Supervisor {
         let count = own.robots.len();
         (own.unsaved, own.reaches, own.hazards) = (vec![false; count], vec![CheckState::EMPTY; count], true);
         own.order(kept)?;
+        own.areas_changed();
         own.note_pause();
         Ok(own)
     }

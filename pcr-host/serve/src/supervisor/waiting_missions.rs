@@ -73,7 +73,9 @@ impl Supervisor {
             }
             let robot = &self.robots[place];
             let later = mission.ends.iter().skip(k + 1);
-            let ends = later.map(|later| MissionEnd { shapes: later.shapes.saturating_sub(end.shapes), ..later.clone() }).collect();
+            let ends = later
+                .map(|later| MissionEnd { shapes: later.shapes.saturating_sub(end.shapes), ..later.clone() })
+                .collect();
             let (after, path) = (robot.course.length(), robot.path);
             return Ok(Some((verdict, PendingMission { after, path, shapes: rest.to_vec(), ends, ..mission })));
         }
@@ -133,7 +135,9 @@ impl Supervisor {
         let robot = &self.robots[place];
         let name = robot.name.clone();
         let possible = match waiting.path == robot.path {
-            true => joint(robot, waiting.after).and_then(|joint| self.attempt_in_parts(place, waiting.clone(), joint, now)),
+            true => {
+                joint(robot, waiting.after).and_then(|joint| self.attempt_in_parts(place, waiting.clone(), joint, now))
+            }
             false => Err(RequestError::NoSuchPath { path: robot.path }),
         };
         match possible {

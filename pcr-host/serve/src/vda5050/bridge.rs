@@ -234,8 +234,7 @@ impl Vda5050Bridge {
                 Ok(())
             }
             TopicKind::Responses => lane.responses(payload, limits, is_third),
-            // Zones are up to the manager.
-            TopicKind::ZoneSet => lane.untouched(kind, payload, limits, is_third),
+            TopicKind::ZoneSet => lane.zone_set(supervisor, payload, limits, is_third),
         };
         if let Err(refusal) = result {
             self.counts.refused += 1;
@@ -400,6 +399,7 @@ impl Vda5050Bridge {
         }
         for lane in &mut self.lanes {
             lane.follow_absence(supervisor);
+            lane.follow_zones(supervisor);
         }
         if std::mem::take(&mut self.has_factsheets) {
             let ability = |lane: &VehicleAdapter| Some((lane.name().to_owned(), lane.pause_ability()?));

@@ -6,16 +6,20 @@
 //! reported heading is compared with that of the path, except where the vehicle turns. Where its heading is not known,
 //! the path tells why: there the vehicle is the disc around its outline.
 
+mod segment;
+mod trajectory;
+
+pub use trajectory::TOLERANCE;
+
 use super::edge_orientation::EdgeOrientation;
 use crate::owned_path::{PathElement, StartPose};
-use pcr_formats::import::{self, ImportOptions, InputFormat, Warnings};
 use pcr_formats::plane_geometry::distance;
 use pcr_formats::scenario::{PathSegment, PlacedSegment};
 use pcr_formats::vda5050::decode::DecodeError;
 use pcr_formats::vda5050::order::{OrderEdge, OrderNode};
 use pcr_formats::vda5050::order_state::OrderState;
 use pcr_formats::vda5050::state::VehiclePosition;
-use serde_json::{Value, json};
+use segment::{LEVER, OrderPathSegment, OrderPathShape, along};
 use std::f64::consts::{PI, TAU};
 
 /// Shortest line \[m\]: below this its direction may be rounding.
@@ -24,32 +28,11 @@ const NEAR: f64 = 1e-6;
 /// Largest angle that counts as rounding \[rad\].
 const STRAIGHT: f64 = 1e-9;
 
-/// Bound on the distance of lines and arcs from a trajectory, and of a trajectory from its nodes \[m\]: margins have to cover
-/// it.
-pub const TOLERANCE: f64 = 2e-3;
-
-/// Length of the path for each radian that an outline turns in place \[m\].
-const LEVER: f64 = 0.02;
-
 /// Turns of outlines up to this go the shorter way round \[rad\].
 const KINK: f64 = 0.1;
 
 /// A vehicle with an outline that is nearer to its first node than this \[m\] goes there without turning.
 const HOP: f64 = 0.1;
-
-/// Bound on the sideways distance of lines and arcs from a trajectory \[m\]. At equal lengths the distance grows with the
-/// length of the trajectory.
-const FIT: f64 = 1e-4;
-
-/// Largest degree of a trajectory. Converting takes longer the larger degree and number of control points are, and all vehicles wait
-/// for it.
-const MOST_DEGREE: f64 = 8.0;
-
-/// Most control points of a trajectory.
-const MOST_POINTS: usize = 100;
-
-/// Most control points of all trajectories that are converted together.
-const MOST_POINTS_IN_ALL: usize = 1000;
 
 /// The path of an order, with the lengths of its nodes.
 #[derive(Clone, Debug, PartialEq)]
@@ -65,57 +48,6 @@ pub struct OrderPath {
     spread: f64,
     /// Why the heading is not known, and the node up to which that is so.
     unknown: Vec<(usize, String)>,
-}
-
-#[derive(Clone, Copy, Debug, PartialEq)]
-struct OrderPathSegment {
-    from: f64,
-    shape: OrderPathShape,
-}
-
-#[derive(Clone, Copy, Debug, PartialEq)]
-enum OrderPathShape {
-    /// A line or an arc, with the angle from the heading to the direction of travel \[rad\].
-    Drive(PlacedSegment, f64),
-    /// A turn in place of an outline from a pose by an angle \[rad\].
-    Turn(StartPose, f64),
-}
-
-impl OrderPathSegment {
-    /// \[m\]
-    fn length(&self) -> f64 {
-        match self.shape {
-            OrderPathShape::Drive(placed, _) => placed.shape.length(),
-            OrderPathShape::Turn(_, sweep) => LEVER * sweep.abs(),
-        }
-    }
-
-    fn end(&self) -> StartPose {
-        match self.shape {
-            OrderPathShape::Drive(placed, side) => {
-                let [x, y] = placed.end();
-                StartPose { x, y, heading: placed.heading_at_end() - side }
-            }
-            OrderPathShape::Turn(from, sweep) => StartPose { heading: from.heading + sweep, ..from },
-        }
-    }
-
-    /// The pose after a length of it \[m\].
-    fn pose(&self, along: f64) -> StartPose {
-        let shape = match self.shape {
-            OrderPathShape::Drive(placed, side) => {
-                let shape = match placed.shape {
-                    PathSegment::Arc { radius, sweep } => {
-                        PathSegment::Arc { radius, sweep: (along / radius).copysign(sweep) }
-                    }
-                    _ => PathSegment::Line { length: along },
-                };
-                OrderPathShape::Drive(PlacedSegment { shape, ..placed }, side)
-            }
-            OrderPathShape::Turn(from, sweep) => OrderPathShape::Turn(from, (along / LEVER).copysign(sweep)),
-        };
-        Self { shape, ..*self }.end()
-    }
 }
 
 impl OrderPath {
@@ -153,7 +85,7 @@ impl OrderPath {
         self.unknown.retain(|(node, _)| *node <= after);
         let StartPose { x, y, heading } = self.end();
         (self.at, self.heading) = ([x, y], heading);
-        check_sizes(&held.edges, after)?;
+        trajectory::check_sizes(&held.edges, after)?;
         for (k, (edge, ends)) in held.edges.iter().zip(held.nodes.windows(2)).enumerate().skip(after) {
             let [from, to] = ends else { continue };
             self.edge(edge, from, to, k)?;
@@ -177,37 +109,16 @@ impl OrderPath {
             self.line(to, wrapped(side));
             return Ok(());
         }
-        let order = json!({ "orderId": "one", "nodes": [from, to], "edges": [edge] }).to_string();
-        let one = Some(1.0);
-        let options = ImportOptions {
-            radius: one,
-            speed: one,
-            acceleration: one,
-            rotation: one,
-            rotation_acceleration: one,
-            tolerance: Some(FIT),
-            horizon: true,
-            ..ImportOptions::default()
-        };
-        let field = || format!("edges[{k}].trajectory");
-        let read = import::scenario(InputFormat::Vda5050, &order, &options, &mut Warnings::default());
-        let read = read.map_err(|error| DecodeError::new(field(), error))?;
-        let Some(agent) = read.agents.first() else { return Err(DecodeError::new(field(), "no way")) };
-        if agent.radius > 1.0 + TOLERANCE {
-            return Err(DecodeError::new(
-                field(),
-                format!("it is {:.4} m off its nodes, or off lines and arcs", agent.radius - 1.0),
-            ));
-        }
+        let (start, path) = trajectory::converted([from, to], edge, k)?;
         // How far the heading of lines and arcs is from that of the curve is not known here.
         let is_curved = |shape: &PathSegment| matches!(shape, PathSegment::Arc { .. });
         let is_ahead = orientation == EdgeOrientation::Tangential(0.0);
-        if self.spread > 0.0 && (!is_ahead || agent.path.iter().any(is_curved)) {
+        if self.spread > 0.0 && (!is_ahead || path.iter().any(is_curved)) {
             self.unknown.push((k + 1, format!("edges[{k}] is curved")));
         }
-        let [x, y, mut heading] = agent.start;
+        let [x, y, mut heading] = start;
         let mut at = [x, y];
-        for &shape in &agent.path {
+        for shape in path {
             let placed = PlacedSegment { start: at, heading, shape };
             (at, heading) = (placed.end(), placed.heading_at_end());
             if shape.length() > 0.0 {
@@ -414,65 +325,10 @@ pub(crate) fn wrapped(angle: f64) -> f64 {
     (angle + PI).rem_euclid(TAU) - PI
 }
 
-/// The length along a line or an arc at which it is nearest to a point \[m\].
-fn along(placed: &PlacedSegment, point: [f64; 2]) -> f64 {
-    let [x, y] = [point[0] - placed.start[0], point[1] - placed.start[1]];
-    let (sin, cos) = placed.heading.sin_cos();
-    let (ahead, left) = (x * cos + y * sin, y * cos - x * sin);
-    match placed.shape {
-        PathSegment::Line { length } => ahead.clamp(0.0, length),
-        PathSegment::Arc { radius, sweep } => {
-            // The centre is to the left of an arc that turns left.
-            let towards = if sweep < 0.0 { -left } else { left };
-            let angle = ahead.atan2(radius - towards).rem_euclid(TAU);
-            let whole = sweep.abs();
-            // Beyond its end, the nearest point is one of the two ends.
-            let angle = if angle <= whole {
-                angle
-            } else if angle - whole < TAU - angle {
-                whole
-            } else {
-                0.0
-            };
-            radius * angle
-        }
-        _ => 0.0,
-    }
-}
-
 /// Position of a node.
 fn position(node: &OrderNode, place: usize) -> Result<[f64; 2], DecodeError> {
     let position = node.node_position.as_ref().map(|position| [position.x, position.y]);
     position.ok_or_else(|| DecodeError::new(format!("nodes[{place}].nodePosition"), "missing"))
-}
-
-/// Refuses trajectories whose conversion would hold up the supervisor, before any is converted. What is no trajectory is left to the
-/// importer.
-fn check_sizes(edges: &[OrderEdge], after: usize) -> Result<(), DecodeError> {
-    let mut all = 0;
-    for (k, trajectory) in
-        edges.iter().enumerate().skip(after).filter_map(|(k, edge)| Some((k, edge.trajectory.as_ref()?)))
-    {
-        let refused = |problem: String| Err(DecodeError::new(format!("edges[{k}].trajectory"), problem));
-        if let Some(degree) = trajectory.get("degree").and_then(Value::as_f64).filter(|degree| *degree > MOST_DEGREE) {
-            return refused(format!("degree {degree}; a trajectory has at most {MOST_DEGREE}"));
-        }
-        let count = |key: &str| trajectory.get(key).and_then(Value::as_array).map_or(0, Vec::len);
-        let (points, knots) = (count("controlPoints"), count("knotVector"));
-        // Knots are as many as control points and degree together, and one more.
-        if points > MOST_POINTS || knots > MOST_POINTS + MOST_DEGREE as usize + 1 {
-            return refused(format!(
-                "{points} control points and {knots} knots; a trajectory has at most {MOST_POINTS} control points"
-            ));
-        }
-        all += points;
-        if all > MOST_POINTS_IN_ALL {
-            return refused(format!(
-                "with it the order has {all} control points; those that are converted together are at most {MOST_POINTS_IN_ALL}"
-            ));
-        }
-    }
-    Ok(())
 }
 
 #[cfg(test)]
@@ -480,6 +336,7 @@ mod tests {
     use super::*;
     use pcr_formats::vda5050::decode::{MessageLimits, read};
     use pcr_formats::vda5050::order::Order;
+    use serde_json::{Value, json};
 
     fn order_with_points(points: &[[f64; 2]], curve: Option<Value>) -> OrderState {
         let nodes: Vec<_> = (points.iter().enumerate())

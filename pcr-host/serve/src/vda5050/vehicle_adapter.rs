@@ -8,6 +8,7 @@ mod absence;
 mod action_states;
 mod actions;
 mod base_end;
+mod corridors;
 mod interim;
 mod job;
 mod journal_notes;
@@ -15,14 +16,13 @@ mod manager_orders;
 mod manager_state;
 mod map_check;
 mod order_termination;
-mod order_trim;
 mod pause;
 mod recency;
 mod refused_orders;
 mod release;
 mod speed_limits;
-mod used_ids;
 mod vehicle_messages;
+mod zones;
 
 pub use job::ActiveOrder;
 
@@ -31,7 +31,7 @@ use crate::supervisor::{JournalError, PauseAbility, StandingPlace, Supervisor};
 use action_states::UnsentActions;
 use base_end::OrderWait;
 use interim::Interim;
-use journal_notes::noted;
+use journal_notes::{NoteChange, UsedIds, noted};
 use pause::VehiclePauses;
 use pcr_formats::vda5050::header::MessageHeader;
 use pcr_formats::vda5050::order::Order;
@@ -43,8 +43,8 @@ use recency::RecencyFilter;
 use serde::Serialize;
 use std::collections::BTreeMap;
 use std::sync::Arc;
-use used_ids::{NoteChange, UsedIds};
 use vehicle_messages::PositionSource;
+use zones::VehicleZones;
 
 /// What a notice to the manager is about.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -147,6 +147,8 @@ pub struct VehicleAdapter {
     posts: Vec<OutboundMessage>,
     /// The nodes and edges ahead, as they were last sent to the manager.
     ahead: Option<manager_state::CachedRemaining>,
+    /// The zones that its manager has sent it.
+    zones: VehicleZones,
     /// Why its order waits, if it does.
     wait: Option<OrderWait>,
     /// What the vehicle needs, according to its own data: the radius of its disc, or how far it reaches beyond its outline \[m\].
@@ -202,6 +204,7 @@ impl VehicleAdapter {
             posts,
             ahead: None,
             wait: None,
+            zones: VehicleZones::remembered(robot)?,
             needs,
             pause_ability: Some(PauseAbility::Unknown),
             elsewhere: None,
@@ -319,6 +322,7 @@ impl VehicleAdapter {
             self.note(supervisor, past.key, past.all());
         }
         self.note_pauses(supervisor);
+        self.note_zones(supervisor);
         if self.unsent.is_some() {
             self.note_unsent(supervisor);
         }

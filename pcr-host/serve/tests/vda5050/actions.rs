@@ -180,7 +180,8 @@ fn instant_actions_pass_in_their_order() {
     own.order("a", &[[0.0, 0.0], [8.0, 0.0]]);
     own.lasts(2.0);
     let before = own.got.len();
-    let actions: Vec<Value> = kinds.iter().enumerate().map(|(k, kind)| action(kind, &format!("m{k}"), "NONE")).collect();
+    let actions: Vec<Value> =
+        kinds.iter().enumerate().map(|(k, kind)| action(kind, &format!("m{k}"), "NONE")).collect();
     own.says(TopicKind::InstantActions, json!({ "actions": actions }));
     own.lasts(1.0);
     let sent = own.got[before..].iter().filter(|(kind, _)| *kind == TopicKind::InstantActions);
@@ -232,4 +233,34 @@ fn a_vehicle_that_refuses_to_pause_is_told_of_once() {
         own.lasts(1.0);
         assert_eq!(own.asked("stopPause").len(), 1, "{version:?}");
     }
+}
+
+/// It was said to have authority that it does not use, as if something was wrong with it.
+#[test]
+fn a_vehicle_that_carries_out_an_action_for_long_stands_for_that() {
+    let mut own = Puppet::new();
+    own.manager(TopicKind::Order, loaded(4));
+    own.lasts(1.0);
+    let nodes: Vec<Value> =
+        [4, 6].iter().map(|k| json!({ "nodeId": format!("n{k}"), "sequenceId": k, "released": true })).collect();
+    (own.state["orderId"], own.state["lastNodeId"], own.state["lastNodeSequenceId"]) =
+        ("a".into(), "n2".into(), 2.into());
+    own.state["nodeStates"] = nodes.into();
+    own.state["agvPosition"]["x"] = 40.0.into();
+    own.ends("pick", "RUNNING");
+    let mut all = own.state["actionStates"].as_array_mut().unwrap().iter_mut();
+    all.find(|action| action["actionId"] == "pick").unwrap()["actionType"] = "pick".into();
+    let mut found = Vec::new();
+    for _ in 0..160 {
+        own.time += 0.5;
+        let state = own.written();
+        let topic = crate::site::interfaces()[1].topic(ProtocolVersion::V2_1, &crate::pair::key(), TopicKind::State);
+        own.bridge.receive(&mut own.supervisor, &topic, state.to_string().as_bytes(), own.time);
+        let events = own.supervisor.settle(own.time).unwrap();
+        found.extend(events.into_iter().filter_map(|event| match event {
+            pcr_serve::event::SupervisorEvent::Standstill { why, .. } => Some(why),
+            _ => None,
+        }));
+    }
+    assert_eq!(found, ["sim/001 stands at 40.00 m, and carries out pick (pick, RUNNING)"]);
 }

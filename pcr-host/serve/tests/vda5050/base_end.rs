@@ -46,12 +46,12 @@ fn a_base_is_used_up_to_where_the_vehicle_may_stand_and_the_manager_reads_what_t
         let error = base_end(&own).expect("why it waits");
         assert_eq!(
             error["errorDescription"],
-            "the base of order a ends at node n4, where the vehicle cannot stand now: other is in the way, whoever goes first; it may go up \
-             to node n2"
+            "the vehicle cannot go to node n4 now, where the base of order a ends: other is in the way, whoever goes first; it may go up to node n2"
         );
         assert_eq!(error["errorHint"], "release it up to node n6 (sequenceId 6)");
         let references = error["errorReferences"].as_array().unwrap();
-        let reference = |key: &str| references.iter().find(|it| it["referenceKey"] == key).unwrap()["referenceValue"].clone();
+        let reference =
+            |key: &str| references.iter().find(|it| it["referenceKey"] == key).unwrap()["referenceValue"].clone();
         assert_eq!([reference("orderId"), reference("nodeId"), reference("vehicle")], ["a", "n4", "other"]);
         assert_eq!(told(&own)["newBaseRequest"], true);
         own.lasts(15.0);
@@ -69,6 +69,22 @@ fn a_base_is_used_up_to_where_the_vehicle_may_stand_and_the_manager_reads_what_t
         own.lasts(30.0);
         assert!(own.is_done("a"), "{is_restarted}: {:?}", own.state);
     }
+}
+
+/// A pause is no matter of the base.
+#[test]
+fn a_base_that_waits_for_a_pause_is_no_error() {
+    let mut own = Pair::new();
+    own.supervisor.pause().unwrap();
+    own.says(TopicKind::Order, order("a", 0, 0, &WAY, 3));
+    own.lasts(2.0);
+    let told = told(&own);
+    assert!(told["information"].to_string().contains("order a waits: the fleet is paused"), "{told}");
+    assert!(base_end(&own).is_none() && told["newBaseRequest"] != true, "{told}");
+    own.supervisor.resume().unwrap();
+    own.lasts(20.0);
+    let [x, _] = own.vehicle.true_position();
+    assert!((x - 8.0).abs() < 0.01, "{x}");
 }
 
 /// What waits goes on by itself when there is room.

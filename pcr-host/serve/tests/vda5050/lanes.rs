@@ -25,7 +25,9 @@ fn notes_of_the_journal_that_cannot_be_read_are_an_error() {
     let settings = bridge::BridgeConfig { manager, vehicles, limits: MessageLimits::default() };
     let bridge = |own: &Pair| Vda5050Bridge::new(settings.clone(), vec![profile(key(), &CAN)], &own.supervisor);
     assert!(bridge(&own).is_ok());
-    for key in ["order", "stops", "sent", "orders", "cancels", "pauses", "needs", "received", "doubtful", "unsent"] {
+    for key in
+        ["order", "stops", "sent", "orders", "cancels", "pauses", "needs", "received", "doubtful", "unsent", "zones"]
+    {
         let entries = own.supervisor.snapshot().unwrap();
         let mut damaged = Supervisor::restored(self::settings(), entries, Box::new(NullStore)).unwrap();
         damaged.note("sim/001", key, json!({ "held": 5 })).unwrap();

@@ -30,4 +30,5 @@ mod stops;
 mod tls;
 mod verdicts;
 mod yard;
+mod zone_sets;
 mod zones;

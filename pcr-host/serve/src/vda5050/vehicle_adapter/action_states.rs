@@ -29,38 +29,47 @@ impl UnsentActions {
     }
 }
 
+/// The actions at nodes and edges that a vehicle has not come to, in the order of travel, as they wait.
+#[derive(Clone, Debug)]
+pub(super) struct ActionsAhead {
+    /// Those on the edge that begins where it is: it may be on it already, if it has it.
+    next: Vec<ActionState>,
+    /// Index of the node where it is.
+    node: usize,
+    others: Vec<ActionState>,
+}
+
+/// An action as it waits.
+fn waiting(action: &Action) -> ActionState {
+    let rest = Map::from_iter([("actionType".to_owned(), action.action_type.clone().into())]);
+    ActionState { action_id: action.action_id.clone(), action_status: "WAITING".into(), rest }
+}
+
 impl ActiveOrder {
-    /// The actions at nodes and edges that a vehicle has not come to, in the order of travel.
-    fn actions_ahead(&self, state: &State) -> impl Iterator<Item = &Action> {
-        let here = self.passed(state).and_then(|place| self.stops.get(place)).map_or(0, |stop| stop.node);
-        // On the edge that begins here it may be already, if it has it.
-        let edge = if here == self.last().node { here } else { here + 1 };
+    /// The actions ahead of a node.
+    pub(super) fn actions_ahead(&self, node: usize) -> ActionsAhead {
         let (nodes, edges) = (&self.order.nodes, &self.order.edges);
-        (here..edges.len()).flat_map(move |k| {
-            let of_edge = edges.get(k.max(edge)).filter(|_| k >= edge).map(|edge| &edge.actions);
-            let of_node = nodes.get(k + 1).map(|node| &node.actions);
-            of_edge.into_iter().chain(of_node).flatten()
-        })
+        let of_edge = |edge: usize| edges.get(edge).into_iter().flat_map(|edge| &edge.actions);
+        let of_node = |node: usize| nodes.get(node).into_iter().flat_map(|node| &node.actions);
+        let others = (node + 1..nodes.len()).flat_map(|node| of_node(node).chain(of_edge(node)));
+        ActionsAhead { next: of_edge(node).map(waiting).collect(), node, others: others.map(waiting).collect() }
     }
 
     /// The states of those that the vehicle does not list.
-    fn unlisted_actions(&self, state: &State) -> Vec<ActionState> {
-        let status = if self.cancel.is_some() || self.lost_at.is_some() { "FAILED" } else { "WAITING" };
-        let own = self.actions_ahead(state).filter(|action| state.action(&action.action_id).is_none());
-        let own = own.map(|action| ActionState {
-            action_id: action.action_id.clone(),
-            action_status: status.into(),
-            rest: Map::from_iter([("actionType".to_owned(), action.action_type.clone().into())]),
-        });
-        own.collect()
+    fn unlisted_actions(&self, ahead: &ActionsAhead, state: &State) -> Vec<ActionState> {
+        let next = if ahead.node == self.last().node { ahead.next.as_slice() } else { &[] };
+        let own = next.iter().chain(&ahead.others).filter(|own| state.action(&own.action_id).is_none());
+        let is_over = self.cancel.is_some() || self.lost_at.is_some();
+        let status = if is_over { "FAILED" } else { "WAITING" };
+        own.map(|own| ActionState { action_status: status.into(), ..own.clone() }).collect()
     }
 }
 
 impl VehicleAdapter {
     /// Adds the actions of the order that the vehicle does not list to its state.
     pub(super) fn add_action_states(&self, state: &mut State) {
-        let more = match &self.job {
-            Some(job) if job.order.order_id == state.order_id => job.unlisted_actions(state),
+        let more = match (&self.job, &self.ahead) {
+            (Some(job), Some(ahead)) => job.unlisted_actions(&ahead.actions, state),
             _ => {
                 let unsent = self.unsent.iter().filter(|unsent| unsent.order == state.order_id);
                 let all = unsent.flat_map(|unsent| &unsent.states);
@@ -74,7 +83,8 @@ impl VehicleAdapter {
     pub(super) fn keep_unsent(&mut self, state: &State) {
         let job = self.job.as_ref().filter(|job| job.order.order_id == state.order_id);
         let unsent = job.map(|job| {
-            let mut states = job.unlisted_actions(state);
+            let here = job.passed(state).and_then(|place| job.stops.get(place)).map_or(0, |stop| stop.node);
+            let mut states = job.unlisted_actions(&job.actions_ahead(here), state);
             states.iter_mut().for_each(|own| own.action_status = "FAILED".into());
             UnsentActions { order: job.order.order_id.clone(), states }
         });

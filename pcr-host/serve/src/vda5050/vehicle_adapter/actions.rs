@@ -98,7 +98,8 @@ impl VehicleAdapter {
         let is_free = |action: &Action| action.action_type == "stopPause";
         let mut send = |actions: &[Action]| {
             let due = if actions.first().is_some_and(is_free) { SendCondition::Free } else { SendCondition::Kept };
-            let message = |header| InstantActions { rest: rest.clone(), ..InstantActions::new(header, actions.to_vec()) };
+            let message =
+                |header| InstantActions { rest: rest.clone(), ..InstantActions::new(header, actions.to_vec()) };
             self.post_actions(due, version, message);
         };
         if actions.is_empty() {
@@ -139,10 +140,10 @@ impl VehicleAdapter {
     /// The cancellation may be lost: it is sent again until the vehicle says what became of it.
     pub(super) fn follow_cancel(&mut self, now: f64) {
         let (Some(version), Some(state), Some(job)) = (self.version, &self.state, &mut self.job) else { return };
-        let Some(id) = job.cancel.clone() else { return };
-        let [_, last] = &mut job.cancelled;
-        if state.action(&id).is_none() && now - *last >= AGAIN {
-            *last = now;
+        let Some(cancel) = &mut job.cancel else { return };
+        if state.action(&cancel.action).is_none() && now - cancel.last_at >= AGAIN {
+            cancel.last_at = now;
+            let id = cancel.action.clone();
             let message = |header| InstantActions::one(header, "cancelOrder", id);
             self.post_actions(SendCondition::Kept, version, message);
         }

@@ -30,6 +30,13 @@ pub(super) struct OrderWait {
     tried_at: f64,
 }
 
+impl OrderWait {
+    /// Whether another end of the base would help: somebody is in the way, and it is not that the fleet is paused, or an area closed.
+    fn is_of_base_end(&self) -> bool {
+        self.goes_on && self.by.is_some()
+    }
+}
+
 impl ActiveOrder {
     /// Whether it goes on beyond its base.
     fn goes_on(&self) -> bool {
@@ -43,8 +50,7 @@ impl ActiveOrder {
             return Vec::new();
         }
         let first = from.map_or(0, |from| from + 1).max(self.order.base.saturating_sub(NODES));
-        let end =
-            |node| MissionEnd { mission: mission(&self.order, node), shapes: self.path.shapes(from, node).len() };
+        let end = |node| MissionEnd { mission: mission(&self.order, node), shapes: self.path.shapes(from, node).len() };
         (first..self.order.base).map(end).collect()
     }
 
@@ -78,7 +84,8 @@ impl VehicleAdapter {
     fn why_it_waits(&self, supervisor: &mut Supervisor, now: f64) -> Option<OrderWait> {
         let job = self.job.as_ref().filter(|job| job.cancel.is_none() && job.lost_at.is_none())?;
         let robot = supervisor.robot(&self.name).ok()?;
-        let waits_for_it = |robot: &SupervisedRobot| robot.waiting.as_ref().is_some_and(|own| job.is_mission(&own.mission));
+        let waits_for_it =
+            |robot: &SupervisedRobot| robot.waiting.as_ref().is_some_and(|own| job.is_mission(&own.mission));
         let (by, why) = supervisor.why_waiting(robot).filter(|_| waits_for_it(robot))?;
         let wait = OrderWait {
             by: by.map(str::to_owned),
@@ -94,9 +101,11 @@ impl VehicleAdapter {
         if let Some(old) = self.wait.as_ref().filter(is_same) {
             return Some(OrderWait { next: old.next.clone(), tried_at: old.tried_at, ..wait });
         }
-        // No node of the horizon helps while nobody is admitted.
-        let is_possible = wait.goes_on && wait.by.is_some() && robot.alarm.is_none();
-        let next = if is_possible { job.next_end(supervisor, &self.name, now) } else { None };
+        let next = if wait.is_of_base_end() && robot.alarm.is_none() {
+            job.next_end(supervisor, &self.name, now)
+        } else {
+            None
+        };
         Some(OrderWait { next, ..wait })
     }
 
@@ -108,12 +117,10 @@ impl VehicleAdapter {
         let [here, base] = wait.nodes.map(name);
         let mut references = vec![(ORDER, order.as_str()), ("nodeId", base)];
         references.extend(wait.by.as_deref().map(|by| ("vehicle", by)));
-        if !wait.goes_on {
+        if !wait.is_of_base_end() {
             let why = format!("order {order} waits: {}", wait.why);
-            let references: Vec<Value> = references
-                .iter()
-                .map(|(key, value)| json!({ "referenceKey": key, "referenceValue": value }))
-                .collect();
+            let references: Vec<Value> =
+                references.iter().map(|(key, value)| json!({ "referenceKey": key, "referenceValue": value })).collect();
             let described = if state.mobile_robot_position.is_some() { "infoDescriptor" } else { "infoDescription" };
             let entry =
                 json!({ "infoType": "waiting", "infoLevel": "INFO", "infoReferences": references, described: why });
@@ -123,7 +130,7 @@ impl VehicleAdapter {
             return;
         }
         let why = format!(
-            "the base of order {order} ends at node {base}, where the vehicle cannot stand now: {}; it may go up to node {here}",
+            "the vehicle cannot go to node {base} now, where the base of order {order} ends: {}; it may go up to node {here}",
             wait.why
         );
         let mut error = ErrorEntry::warning("baseEnd", why, &references);

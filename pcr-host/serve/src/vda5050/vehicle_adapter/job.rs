@@ -16,6 +16,10 @@ use serde_json::{Map, Value};
 /// Largest distance between the vehicle and the first node of its order \[m\]; the vehicle goes there in a straight line.
 pub(super) const BEGINS: f64 = 1.0;
 
+/// Number of passed stops that are kept when an order is trimmed: late states name them. An order that is extended for hours stays short, because
+/// each update writes all of it to the journal.
+const KEPT: usize = 50;
+
 /// A place where the base of the vehicle's order may end.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct ReleasePoint {
@@ -52,6 +56,23 @@ pub struct VehicleAcknowledgement {
     pub acknowledged: Option<(u64, u64)>,
 }
 
+/// A cancellation of an order.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Cancellation {
+    /// Id of the action.
+    pub action: String,
+    /// Times at which the order was cancelled first, and at which the action was sent last \[s\].
+    pub(crate) first_at: f64,
+    pub(crate) last_at: f64,
+}
+
+impl Cancellation {
+    /// One of a time before the start.
+    fn remembered(action: String) -> Self {
+        Self { action, first_at: f64::NEG_INFINITY, last_at: f64::NEG_INFINITY }
+    }
+}
+
 /// Key of the note about that.
 pub(super) const RECEIVED: &str = "received";
 
@@ -78,10 +99,8 @@ pub struct ActiveOrder {
     pub(crate) reported_complete_at: Option<f64>,
     /// Whether the nodes ahead differ from those that the vehicle knows.
     pub changed: bool,
-    /// Id of the action that cancels the order.
-    pub cancel: Option<String>,
-    /// Times at which the cancellation was sent, for the first and for the last time \[s\].
-    pub cancelled: [f64; 2],
+    /// Its cancellation, once it is cancelled.
+    pub cancel: Option<Cancellation>,
     /// Time since which the vehicle has lost the order \[s\].
     pub(crate) lost_at: Option<f64>,
     /// Time since which the vehicle refuses what was sent last \[s\].
@@ -123,7 +142,6 @@ impl ActiveOrder {
             reported_complete_at: None,
             changed: true,
             cancel: None,
-            cancelled: [f64::NEG_INFINITY; 2],
             lost_at: None,
             refused: None,
             limits: Vec::new(),
@@ -141,6 +159,7 @@ impl ActiveOrder {
         let spread = robot.map_or(0.0, |robot| robot.abilities.spread());
         let way = OrderPath::new(start, &held, spread)
             .map_err(|fault| JournalError(format!("the order {}: {fault}", held.order_id)))?;
+        let cancel = cancel.map(Cancellation::remembered);
         let mut job = Self { cancel, ..Self::new(held, way, version) };
         if let Some(stops) = noted(robot, "stops")? {
             (job.stops, job.sent) = (stops, noted(robot, "sent")?);
@@ -158,7 +177,12 @@ impl ActiveOrder {
     /// The manager's order as a note.
     pub(super) fn given(&self) -> StoredOrder {
         let Self { order: held, path: way, version, cancel, .. } = self;
-        StoredOrder { held: held.clone(), start: way.start(), version: version.clone(), cancel: cancel.clone() }
+        StoredOrder {
+            held: held.clone(),
+            start: way.start(),
+            version: version.clone(),
+            cancel: cancel.as_ref().map(|cancel| cancel.action.clone()),
+        }
     }
 
     /// Index of the node to which a mission leads.
@@ -243,7 +267,7 @@ impl ActiveOrder {
 
     /// The order is being cancelled by this action, sent now.
     pub(super) fn is_cancelled(&mut self, action: String, now: f64) {
-        (self.cancel, self.cancelled) = (Some(action), [now; 2]);
+        self.cancel = Some(Cancellation { action, first_at: now, last_at: now });
     }
 
     /// For a vehicle that has lost this order: the new order `held` from where the vehicle is now, if it follows the rest of the admitted
@@ -287,6 +311,31 @@ impl ActiveOrder {
             .ok()
             .filter(|way| follows && way.node(0).is_some_and(|begins| begins <= BEGINS))?;
         Some((Self::new(held, way, version), joins))
+    }
+
+    /// The order from a node on that the vehicle has passed long ago; `None` if that is not worth it.
+    pub(super) fn trimmed(&self, state: &State) -> Option<Self> {
+        let sent = self.sent.filter(|_| self.is_confirmed() && state.order_id == self.order.order_id)?;
+        let first = self.passed(state)?.checked_sub(KEPT)?.min(sent.from);
+        let first = (0..=first).rev().find(|&place| self.stops.get(place).is_some_and(|stop| !stop.between))?;
+        let node = self.stops.get(first)?.node.min(self.order.base);
+        if node < KEPT {
+            return None;
+        }
+        let (from, start) = (self.path.node(node)?, self.path.arrival(node)?);
+        let mut job = self.clone();
+        job.order.forget(node);
+        job.path = OrderPath::new(start, &job.order, self.path.spread()).ok()?;
+        job.requested_node = job.requested_node.checked_sub(node)?;
+        job.sent = Some(SentUpdate { from: sent.from.checked_sub(first)?, ..sent });
+        let moved = |stop: &ReleasePoint| {
+            Some(ReleasePoint { length: stop.length - from, node: stop.node.checked_sub(node)?, ..*stop })
+        };
+        job.stops = self.stops.iter().skip(first).map(moved).collect::<Option<_>>()?;
+        // The vehicle knows stops by their names, which contain lengths: by rounding another one may have come out.
+        let names = |job: &Self| job.stops.iter().rev().map(|stop| job.id(*stop)).collect::<Vec<_>>();
+        let (own, before) = (names(&job), names(self));
+        before.starts_with(&own).then_some(job)
     }
 
     /// The last stop that the vehicle has, or may have.
@@ -356,6 +405,7 @@ impl ActiveOrder {
                 *id = Some(self.id(stop));
             }
         }
+        edge.remove_corridor();
         if from.between || to.between {
             edge.rest.remove("length");
         }

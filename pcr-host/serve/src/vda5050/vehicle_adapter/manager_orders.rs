@@ -9,6 +9,7 @@ use crate::supervisor::{AdmissionResult, MissionRequest, Supervisor};
 use pcr_formats::vda5050::decode::{self, DecodeError, MessageLimits};
 use pcr_formats::vda5050::order::Order;
 use pcr_formats::vda5050::order_state::{OrderState, RejectedOrder, UpdateResult};
+use pcr_formats::vda5050::state::ErrorEntry;
 use pcr_formats::vda5050::version::{OrderRejection, ProtocolVersion};
 
 /// Largest number of orders and updates that wait for the first state of a vehicle after a restart.
@@ -40,7 +41,11 @@ impl VehicleAdapter {
     /// Reports to the manager why an order is rejected.
     pub(super) fn reject(&mut self, rejected: &RejectedOrder, order: &str, update: u64) {
         let Some(version) = self.version else { return };
-        let error = rejected.report(version, order, update);
+        self.complain(rejected.report(version, order, update));
+    }
+
+    /// Reports an error to the manager, until an order is taken.
+    pub(super) fn complain(&mut self, error: ErrorEntry) {
         /// Largest number of errors that are kept.
         const MOST: usize = 10;
         if !self.errors.contains(&error) {
@@ -117,18 +122,9 @@ impl VehicleAdapter {
             && state.is_idle()
     }
 
-    /// Rejects an order that the vehicle's margin does not cover.
+    /// Rejects an order that leads against a one-way zone, or from map to map, or that has a deviation which is none.
     fn passable(&self, supervisor: &Supervisor, order: &Order) -> Result<(), RejectedOrder> {
-        for (k, edge) in order.edges.iter().enumerate() {
-            if edge.rest.contains_key("corridor") {
-                let field = format!("edges[{k}].corridor");
-                return Err(RejectedOrder::new(
-                    OrderRejection::Order,
-                    &field,
-                    "vehicles keep to the middle of their way here",
-                ));
-            }
-        }
+        self.zones.check(order)?;
         for (k, node) in order.nodes.iter().enumerate() {
             let position = node.node_position.as_ref();
             position.map_or(Ok(None), |position| position.deviation()).map_err(|refusal| {

@@ -1,14 +1,14 @@
 //! The state of the vehicle for the manager, in the manager's numbers.
 
 use super::super::remaining_elements::{EdgeStateOut, NodeStateOut};
+use super::action_states::ActionsAhead;
 use super::recency::Recency;
 use super::{ActiveOrder, NEEDS, OutboundMessage, Recipient, SendCondition, VehicleAdapter};
 use crate::supervisor::{PauseAbility, Supervisor};
 use pcr_formats::import::{self, ImportOptions, Warnings};
 use pcr_formats::vda5050::decode::{self, DecodeError, MessageLimits};
-use pcr_formats::vda5050::header::MessageHeader;
 use pcr_formats::vda5050::messages::{Connection, Factsheet, Responses};
-use pcr_formats::vda5050::state::{EdgeState, NodeState, PartialList, State};
+use pcr_formats::vda5050::state::{EdgeState, ErrorEntry, NodeState, PartialList, State};
 use pcr_formats::vda5050::topics::TopicKind;
 use pcr_formats::vda5050::version::ProtocolVersion;
 use pcr_planning::fleet::ConvexBody;
@@ -23,6 +23,8 @@ pub(super) struct CachedRemaining {
     has_base: bool,
     nodes: PartialList<NodeState>,
     edges: PartialList<EdgeState>,
+    pub(super) actions: ActionsAhead,
+    pub(super) corridors: Option<ErrorEntry>,
 }
 
 impl CachedRemaining {
@@ -31,7 +33,9 @@ impl CachedRemaining {
         let edges: Vec<EdgeStateOut<'_>> = job.order.edges.iter().skip(node).map(EdgeStateOut::from).collect();
         let has_base = nodes.iter().any(|node| node.released);
         let (order, update) = (job.order.order_id.clone(), job.order.update_id);
-        Self { order, update, node, has_base, nodes: PartialList::written(&nodes), edges: PartialList::written(&edges) }
+        let (nodes, edges) = (PartialList::written(&nodes), PartialList::written(&edges));
+        let (actions, corridors) = (job.actions_ahead(node), job.corridors_ahead(node));
+        Self { order, update, node, has_base, nodes, edges, actions, corridors }
     }
 
     fn is_of(&self, job: &ActiveOrder, node: usize) -> bool {
@@ -52,7 +56,7 @@ impl VehicleAdapter {
         self.forward(Recipient::Manager, kind, is_third, payload);
     }
 
-    fn forward(&mut self, to: Recipient, kind: TopicKind, is_third: bool, payload: &[u8]) {
+    pub(super) fn forward(&mut self, to: Recipient, kind: TopicKind, is_third: bool, payload: &[u8]) {
         let version = if is_third { ProtocolVersion::V3_0 } else { ProtocolVersion::V2_1 };
         let key = self.profile.key.clone();
         self.posts.push(OutboundMessage {
@@ -63,23 +67,6 @@ impl VehicleAdapter {
             payload: payload.to_vec(),
             due: SendCondition::Kept,
         });
-    }
-
-    /// Passes a message on to the vehicle unchanged.
-    ///
-    /// # Errors
-    /// [`DecodeError`] for an invalid message, or one about another vehicle.
-    pub fn untouched(
-        &mut self,
-        kind: TopicKind,
-        payload: &[u8],
-        limits: MessageLimits,
-        is_third: bool,
-    ) -> Result<(), DecodeError> {
-        let header: MessageHeader = decode::read(payload, limits)?;
-        header.check(&self.profile.key, is_third)?;
-        self.forward(Recipient::Vehicle, kind, is_third, payload);
-        Ok(())
     }
 
     /// Passes on the manager's answers to requests of the vehicle. A request to enter a zone is answered as the manager says,
@@ -174,15 +161,31 @@ impl VehicleAdapter {
     }
 
     fn translated(&mut self, mut state: State) -> State {
+        self.look_ahead(&state);
         self.job.iter().for_each(|job| job.name_updates(&mut state.errors));
         let limits = self.limit_errors(&state);
         let own = self.errors.iter().cloned().chain(self.elsewhere_error()).chain(self.pause_error());
-        let own = own.chain(self.notice_errors());
-        state.errors.extend(own.chain(limits));
+        let corridors = self.ahead.as_ref().and_then(|ahead| ahead.corridors.clone());
+        let own = own.chain(self.notice_errors()).chain(corridors).chain(self.zones.errors());
+        let own: Vec<ErrorEntry> = own.chain(limits).collect();
+        state.errors.extend(own);
         self.add_action_states(&mut state);
         self.in_manager_numbers(&mut state);
         self.tell_wait(&mut state);
         state
+    }
+
+    /// Finds what is ahead of the vehicle of its order.
+    fn look_ahead(&mut self, state: &State) {
+        let job = self.job.as_ref().filter(|job| job.order.order_id == state.order_id);
+        let Some(job) = job else {
+            self.ahead = None;
+            return;
+        };
+        let node = job.passed(state).and_then(|place| job.stops.get(place)).map_or(0, |stop| stop.node);
+        if self.ahead.as_ref().is_none_or(|ahead| !ahead.is_of(job, node)) {
+            self.ahead = Some(CachedRemaining::of(job, node));
+        }
     }
 
     /// Gives a state the manager's numbers of nodes and updates, and all nodes that are ahead.
@@ -209,9 +212,6 @@ impl VehicleAdapter {
             return;
         }
         let waits = state.node_states.iter().any(|node| node.released);
-        if self.ahead.as_ref().is_none_or(|ahead| !ahead.is_of(job, stop.node)) {
-            self.ahead = Some(CachedRemaining::of(job, stop.node));
-        }
         let Some(ahead) = &self.ahead else { return };
         (state.node_states, state.edge_states) = (ahead.nodes.clone(), ahead.edges.clone());
         // Whether more base is needed depends on the base of the manager, not on the part that the vehicle has.

@@ -7,6 +7,7 @@
 //! meanwhile, it shows that, and is cancelled again. A first order that the vehicle refuses has reached it: only another copy of what it
 //! refuses may still come, and [`REFUSED`] is enough for that.
 
+use super::job::Cancellation;
 use super::map_check::{MAP, map_of};
 use super::recency::LATEST;
 use super::refused_orders::TRIED;
@@ -104,8 +105,9 @@ impl VehicleAdapter {
             }
             return;
         }
-        let status = job.cancel.as_ref().and_then(|action| state.action(action));
-        let (is_failed, [since, last]) = (status == Some("FAILED"), job.cancelled);
+        let Some(Cancellation { action, first_at: since, last_at: last }) = job.cancel.clone() else { return };
+        let status = state.action(&action);
+        let is_failed = status == Some("FAILED");
         if !is_failed && status != Some("FINISHED") || now - since < LATEST && self.is_cancelling(state) {
             return;
         }

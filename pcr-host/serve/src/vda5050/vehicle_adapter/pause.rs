@@ -132,7 +132,9 @@ impl VehicleAdapter {
     /// What the vehicle refuses, in words.
     fn refusal_of_pause(&self) -> Option<&'static str> {
         Some(match self.pauses.refused? {
-            true => "it has to stop, and refuses to pause: it may go on to the end of what was released; stop it by hand",
+            true => {
+                "it has to stop, and refuses to pause: it may go on to the end of what was released; stop it by hand"
+            }
             false => "it may go on, and refuses to end its pause: let it go on by hand",
         })
     }

@@ -48,7 +48,7 @@ impl ActiveOrder {
         self.limits_at = Some(key);
         let shapes = self.path.shapes(None, self.order.nodes.len()).to_vec();
         let limits = match OwnedPath::new(self.path.start(), shapes) {
-            Ok(course) => supervisor.speed_limits(&course, &robot.body),
+            Ok(course) => supervisor.speed_limits(&robot.name, &course, &robot.body),
             // The supervisor has admitted no such path, and nothing of it is released.
             Err(_) => Vec::new(),
         };

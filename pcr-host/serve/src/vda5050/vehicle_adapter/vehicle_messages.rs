@@ -13,14 +13,25 @@ use crate::supervisor::{PositionReport, Supervisor};
 use pcr_formats::vda5050::decode::{self, DecodeError, MessageLimits};
 use pcr_formats::vda5050::header::MessageHeader;
 use pcr_formats::vda5050::messages::Visualization;
-use pcr_formats::vda5050::state::{State, VehiclePosition};
+use pcr_formats::vda5050::state::{ActionState, State, VehiclePosition};
 use pcr_formats::vda5050::topics::TopicKind;
+use serde_json::Value;
 use std::sync::Arc;
 
 /// Least time by which a late message counts as older than the newest one, and largest age that is passed on \[s\]: the supervisor
 /// refuses larger ages.
 const LATE: f64 = 1e-3;
 const OLDEST: f64 = 1e6;
+
+/// The action of its order that a standing vehicle carries out, in words.
+fn action_under_way(state: &State) -> Option<String> {
+    let is_under_way = |action: &&ActionState| {
+        matches!(action.action_status.as_str(), "INITIALIZING" | "RUNNING" | "PAUSED" | "RETRIABLE")
+    };
+    let action = state.action_states.iter().find(is_under_way).filter(|_| !state.driving)?;
+    let kind = action.rest.get("actionType").and_then(Value::as_str).unwrap_or("an action");
+    Some(format!("carries out {kind} ({}, {})", action.action_id, action.action_status))
+}
 
 /// The kind of message with a position.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -86,6 +97,10 @@ impl VehicleAdapter {
             self.doubts(supervisor, false);
         }
         if is_new {
+            supervisor.set_doing(&self.name, action_under_way(&state));
+            if is_proven {
+                self.follow_zone_sets(supervisor, &state);
+            }
             self.state = Some(Arc::new(state));
             if is_proven {
                 self.heard_at = overtaken.unwrap_or(now);
