@@ -47,6 +47,9 @@
 //! site_changes          the same in answers                                            ClosureEntry
 //! own_missions          missions of a file, and what became of them
 //! own_assignment        which vehicle does which of them
+//! passing_cells         where two robots can be at the same time, and how they go on
+//! passing_search        whether some robots can pass one another at all
+//! passing_refusals      missions that are given up because they cannot
 //! own_run               a run of such missions                                        run_missions, MissionRun
 //! trajectory            what a robot did, as an agent of a scenario
 //! random_draws          random goals, delays and starts
@@ -78,6 +81,9 @@ mod own_assignment;
 mod own_missions;
 mod own_run;
 mod parking_spots;
+mod passing_cells;
+mod passing_refusals;
+mod passing_search;
 mod planning_context;
 mod precedence_search;
 mod precedence_switching;

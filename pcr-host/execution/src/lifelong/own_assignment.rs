@@ -1,6 +1,6 @@
 //! Missions of a file, given to vehicles: which one does which mission, and the stops of each, one after the other.
 
-use super::own_missions::MissionOutcome;
+use super::own_missions::{MissionOutcome, OwnMission};
 use super::robot_mission::RobotMission;
 use super::route_graph::DeparturePose;
 use super::run_state::LifelongState;
@@ -19,11 +19,12 @@ impl LifelongState {
             b.priority.cmp(&a.priority).then(a.release.total_cmp(&b.release))
         });
         for mission in open {
-            let request = &own.missions[mission].request;
+            let OwnMission { request, unable, .. } = &own.missions[mission];
             let idle = (0..self.robots.len()).filter(|&robot| {
                 own.current[robot].is_none()
                     && self.missions[robot].is_none()
                     && request.vehicle.is_none_or(|vehicle| vehicle == robot)
+                    && !unable.contains(&robot)
                     && self.is_able(robot, now)
             });
             let times = idle.map(|robot| (self.time_to(robot, &request.stops), robot));

@@ -29,6 +29,8 @@ pub(super) struct OwnMission {
     pub(super) begun: Option<f64>,
     /// Times at which its stops were reached \[s\].
     pub(super) reached: Vec<f64>,
+    /// Vehicles that can never do it.
+    pub(super) unable: Vec<usize>,
 }
 
 /// Where a vehicle waited for another one.
@@ -68,6 +70,7 @@ impl OwnMissions {
             vehicle: None,
             begun: None,
             reached: Vec::new(),
+            unable: Vec::new(),
         });
         let (missions, current) = (missions.collect(), vec![None; fleet.vehicles.len()]);
         let count = fleet.vehicles.len();

@@ -56,8 +56,8 @@ pub struct MissionResult {
 }
 
 /// Why no vehicle can do a mission.
-struct ImpossibleMission {
-    why: String,
+pub(super) struct ImpossibleMission {
+    pub(super) why: String,
     /// The change because of which a vehicle cannot come to a node of the layout, if it is one.
     cause: Option<(ChangeId, usize, usize)>,
 }
@@ -109,6 +109,9 @@ pub fn run_missions(
         }
         run.change_world(now);
         run.note_parked(now);
+        if tick == 0 {
+            run.refuse_without_passing();
+        }
         run.give(now);
         run.decide(now);
         run.note_begun(now);
@@ -199,14 +202,19 @@ impl LifelongState {
             if let Some((change, robot, node)) = cause {
                 self.world.lose(change, robot, node, now);
             }
-            let Some(own) = &mut self.own else { return };
-            let vehicle = own.current.iter().position(|current| *current == Some(mission));
-            own.refuse(mission, why);
-            if let Some(robot) = vehicle {
-                self.missions[robot] = None;
-                self.world.suspended[robot] = None;
-                self.robots[robot].way.goals.clear();
-            }
+            self.drop_mission(mission, why);
+        }
+    }
+
+    /// Gives a mission up, also if a vehicle has it.
+    pub(super) fn drop_mission(&mut self, mission: usize, why: String) {
+        let Some(own) = &mut self.own else { return };
+        let vehicle = own.current.iter().position(|current| *current == Some(mission));
+        own.refuse(mission, why);
+        if let Some(robot) = vehicle {
+            self.missions[robot] = None;
+            self.world.suspended[robot] = None;
+            self.robots[robot].way.goals.clear();
         }
     }
 
@@ -221,38 +229,42 @@ impl LifelongState {
         if vehicles.is_empty() {
             return Some(ImpossibleMission { why: "there is no vehicle".into(), cause: None });
         }
-        let (mut reasons, mut first_cause) = (Vec::new(), None);
-        for vehicle in vehicles {
-            let id = &own.fleet.vehicles[vehicle].id;
-            if self.world.stranded[vehicle] == f64::INFINITY {
-                reasons.push(format!("vehicle {id} broke down"));
-                continue;
-            }
-            let blocked = self.blocked_for_ever(own, vehicle);
-            let lost = (1..=stops.len()).find(|&count| !self.reaches(vehicle, &stops[..count], &blocked))?;
-            let from = match lost.checked_sub(2) {
-                Some(before) => format!("node {}", self.name_of(stops[before])),
-                None => "where it is".into(),
-            };
-            let forbidden = &own.fleet.vehicles[vehicle].forbidden;
-            let mut why = match forbidden.is_empty() {
-                true => String::new(),
-                false => " without the edges that are forbidden to it".into(),
-            };
-            if self.reaches(vehicle, &stops[..lost], &[]) {
-                let cause = self.cause(vehicle, &stops[..lost], &self.world.lasting());
-                first_cause = first_cause.or(cause.map(|change| (change, vehicle, stops[lost - 1])));
-                why = match cause {
-                    Some(_) => " without what is closed, or in the way of a vehicle that broke down, for ever".into(),
-                    None => format!(" past {}, which can never leave", self.parked_names(own, vehicle)),
-                };
-            }
-            reasons.push(format!(
-                "vehicle {id}: no route leads from {from} to node {}{why}",
-                self.name_of(stops[lost - 1])
-            ));
+        let all: Option<Vec<ImpossibleMission>> =
+            vehicles.into_iter().map(|vehicle| self.why_not(own, vehicle, stops)).collect();
+        let all = all?;
+        let why: Vec<&str> = all.iter().map(|it| it.why.as_str()).collect();
+        Some(ImpossibleMission { why: why.join("; "), cause: all.iter().find_map(|it| it.cause) })
+    }
+
+    /// Why a vehicle can never come to stops from where it is now; `None` if a way leads there.
+    pub(super) fn why_not(&self, own: &OwnMissions, vehicle: usize, stops: &[usize]) -> Option<ImpossibleMission> {
+        let id = &own.fleet.vehicles[vehicle].id;
+        if self.world.stranded[vehicle] == f64::INFINITY {
+            return Some(ImpossibleMission { why: format!("vehicle {id} broke down"), cause: None });
         }
-        Some(ImpossibleMission { why: reasons.join("; "), cause: first_cause })
+        let blocked = self.blocked_for_ever(own, vehicle);
+        let lost = (1..=stops.len()).find(|&count| !self.reaches(vehicle, &stops[..count], &blocked))?;
+        let from = match lost.checked_sub(2) {
+            Some(before) => format!("node {}", self.name_of(stops[before])),
+            None => "where it is".into(),
+        };
+        let forbidden = &own.fleet.vehicles[vehicle].forbidden;
+        let mut why = match forbidden.is_empty() {
+            true => String::new(),
+            false => " without the edges that are forbidden to it".into(),
+        };
+        let mut lost_by = None;
+        if self.reaches(vehicle, &stops[..lost], &[]) {
+            let cause = self.cause(vehicle, &stops[..lost], &self.world.lasting());
+            lost_by = cause.map(|change| (change, vehicle, stops[lost - 1]));
+            why = match cause {
+                Some(_) => " without what is closed, or in the way of a vehicle that broke down, for ever".into(),
+                None => format!(" past {}, which can never leave", self.parked_names(own, vehicle)),
+            };
+        }
+        let node = self.name_of(stops[lost - 1]);
+        let why = format!("vehicle {id}: no route leads from {from} to node {node}{why}");
+        Some(ImpossibleMission { why, cause: lost_by })
     }
 
     /// The names of all vehicles but one that can never leave where they stand.
@@ -263,7 +275,7 @@ impl LifelongState {
     }
 
     /// For each atom whether it is closed for ever, or a vehicle other than this one stands on it that never drives again, or can never leave.
-    fn blocked_for_ever(&self, own: &OwnMissions, vehicle: usize) -> Vec<bool> {
+    pub(super) fn blocked_for_ever(&self, own: &OwnMissions, vehicle: usize) -> Vec<bool> {
         let mut blocked = vec![false; self.site.atoms.len()];
         for change in self.world.lasting() {
             self.blocked(change, vehicle).iter().for_each(|&atom| blocked[atom] = true);
@@ -288,7 +300,7 @@ impl LifelongState {
     }
 
     /// The name of a node of the layout.
-    fn name_of(&self, place: usize) -> &str {
+    pub(super) fn name_of(&self, place: usize) -> &str {
         self.world.nodes.get(place).map_or("", String::as_str)
     }
 

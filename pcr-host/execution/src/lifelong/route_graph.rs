@@ -11,7 +11,7 @@ use super::gates::ElementContact;
 use super::kinematic_limits::KinematicLimits;
 use super::route_element::{ElementMaker, RouteElement, STRAIGHT, wrapped};
 use crate::error::ExecutionError;
-use pcr_core::InvalidInput;
+use pcr_core::{InvalidInput, Motion};
 use pcr_formats::import::{Facing, ImportedLayout, Layout, RouteStep, VehicleTraits};
 use pcr_formats::scenario::PathSegment;
 use pcr_planning::fleet::ConvexBody;
@@ -240,8 +240,14 @@ impl RouteGraph {
         &self.layers[atom.layer].body
     }
 
+    /// An atom as a motion of the robots of its layer at 1 m/s.
+    pub(super) fn motion(&self, atom: usize) -> Result<Motion<'_, f64>, InvalidInput> {
+        let it = &self.atoms[atom];
+        it.motion(self.body_of(it))
+    }
+
     /// The elements of a robot that stands at a node, with each heading.
-    fn standing_at(&self, node: usize) -> impl Iterator<Item = usize> {
+    pub(super) fn standing_at(&self, node: usize) -> impl Iterator<Item = usize> {
         let poses = &self.at_nodes[node].poses;
         let disc = poses.is_empty().then(|| self.standing(node));
         poses.iter().map(|pose| pose.1).chain(disc)

@@ -7,6 +7,8 @@ use pcr_formats::scenario::{Agent, PathSegment, PlacedSegment, REVERSE};
 use pcr_formats::splitmix64::SplitMix64;
 use pcr_planning::check::CheckReport;
 
+mod passing;
+
 /// A site with these nodes; edges with their ids, from node to node.
 fn site(points: &[[f64; 2]], edges: &[(usize, [usize; 2])]) -> ImportedLayout {
     let node = |(id, [x, y]): (usize, &[f64; 2])| {
