@@ -37,6 +37,7 @@
 //! precedence_switching  precedence that is reversed while robots drive
 //! unblocking            moves robots out of the way of a mission
 //! joint_advance         robots that move up together, where nothing else is admitted
+//! shunting              robots with missions of a file that move one after the other, where nothing else is admitted
 //! joint_phase           the times at which they do
 //! motion_record         motions of the robots, for the independent checker            RunCertificate
 //! outcome               results of a run                                              LifelongResult
@@ -101,6 +102,7 @@ mod route_graph;
 mod run;
 mod run_state;
 mod scheduling;
+mod shunting;
 pub mod site_changes;
 mod speed_limits;
 mod starvation;

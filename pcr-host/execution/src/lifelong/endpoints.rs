@@ -407,7 +407,7 @@ impl<'s> ReachabilitySearch<'s> {
 }
 
 /// The nodes that can be reached from one, or from which it can be, over these atoms.
-fn reached(site: &RouteGraph, from: usize, back: bool, open: impl Fn(usize) -> bool) -> Vec<bool> {
+pub(super) fn reached(site: &RouteGraph, from: usize, back: bool, open: impl Fn(usize) -> bool) -> Vec<bool> {
     let mut found = vec![false; site.points.len()];
     found[from] = true;
     let mut left = vec![from];

@@ -30,13 +30,14 @@ const PERIOD: f64 = 60.0;
 const SOON: f64 = 300.0;
 
 /// More way for a robot.
-struct Stretch {
-    robot: usize,
-    atoms: Vec<usize>,
+#[derive(Clone, Debug)]
+pub(super) struct Stretch {
+    pub(super) robot: usize,
+    pub(super) atoms: Vec<usize>,
 }
 
 /// Robots with more way, and the orders of the whole fleet with it.
-struct JointAdmission {
+pub(super) struct JointAdmission {
     robots: Vec<LifelongRobot>,
     book: RegionTable,
     forecast: Forecast,
@@ -76,7 +77,7 @@ impl LifelongState {
     }
 
     /// The robots whose missions wait, the oldest first.
-    fn waiting(&self) -> Vec<usize> {
+    pub(super) fn waiting(&self) -> Vec<usize> {
         let since = |robot: usize| self.missions[robot].map_or(f64::INFINITY, |mission| mission.rank);
         let is_waiting = |robot: &usize| self.missions[*robot].is_some_and(|mission| !mission.admitted);
         let mut waiting: Vec<usize> = (0..self.robots.len()).filter(is_waiting).collect();
@@ -145,7 +146,7 @@ impl LifelongState {
     }
 
     /// The fleet with more way for some robots, if everybody can still finish.
-    fn admit_together(&self, batch: &[Stretch], now: f64) -> Option<JointAdmission> {
+    pub(super) fn admit_together(&self, batch: &[Stretch], now: f64) -> Option<JointAdmission> {
         let (mut robots, mut book, mut kept_atoms) = (self.robots.clone(), self.book.clone(), Vec::new());
         for Stretch { robot, atoms } in batch {
             let kept = self.whole(*robot);
@@ -199,7 +200,7 @@ impl LifelongState {
         }
     }
 
-    fn take_together(&mut self, batch: &[Stretch], found: JointAdmission, now: f64) {
+    pub(super) fn take_together(&mut self, batch: &[Stretch], found: JointAdmission, now: f64) {
         let JointAdmission { robots, book, forecast, kept } = found;
         for (Stretch { robot, .. }, kept) in batch.iter().zip(kept) {
             let end = robots[*robot].way.end();

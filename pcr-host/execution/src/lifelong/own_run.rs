@@ -8,6 +8,7 @@ use super::random_draws::STEP;
 use super::robot::LifelongRobot;
 use super::route_graph::{DeparturePose, RouteGraph, VehicleLayer};
 use super::run_state::LifelongState;
+use super::shunting::is_one_way;
 use super::trajectory;
 use super::world_changes::ChangeId;
 use super::{CoordinationMethod, DelayModel, LifelongOptions};
@@ -151,12 +152,13 @@ impl LifelongState {
             }
         }
         let ends = Endpoints::of(&site, 1);
+        let own = OwnMissions::new(fleet, is_one_way(&site));
         let delays = DelayModel { stopped: 0.0, stop: 1.0, slip: 0.0 };
         let method = CoordinationMethod::Orders;
         let request = LifelongOptions { agents: starts.len(), duration: f64::INFINITY, delays, seed: 1, method };
         let run =
             Self::standing((imported, false), site, ends, WellFormedness::default(), &starts, request, &fleet.changes)?;
-        Ok(Self { own: Some(OwnMissions::new(fleet)), ..run })
+        Ok(Self { own: Some(own), ..run })
     }
 
     /// Notes vehicles that can never leave where they stand. Missions that are impossible for that reason are given up.

@@ -21,6 +21,9 @@ pub(super) const TRIES: usize = 4;
 impl LifelongState {
     /// Searches ways for the missions that have waited longest, then better ways for robots that wait on the way.
     pub(super) fn decide(&mut self, now: f64) {
+        if self.shunts(now) {
+            return;
+        }
         // Robots that share their tasks are sent for others instead.
         if self.request.method == CoordinationMethod::Orders && self.tasks.is_none() && self.moves_up(now) {
             self.look_again(now, 0);

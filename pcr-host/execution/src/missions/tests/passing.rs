@@ -119,10 +119,10 @@ fn comes_through(points: &[[f64; 2]], edges: &[[usize; 2]], starts: &[usize], go
 }
 
 /// Against a search over places along all edges, which knows nothing of regions: with more clearance than robots need, what it finds is
-/// possible; with less, what it does not find is not.
+/// possible, and done; with less, what it does not find is not. Before, a third of what was possible was given up.
 #[test]
-fn missions_are_refused_if_and_only_if_no_motion_exists() {
-    let (mut refused, mut done, mut others) = (0, 0, 0);
+fn missions_are_done_if_a_motion_exists_and_refused_at_once_if_none_does() {
+    let (mut refused, mut done) = (0, 0);
     for seed in 0..120 {
         let mut random = SplitMix64(seed);
         let points: Vec<[f64; 2]> = (0..6).map(|k| [3.0 * f64::from(k % 3), 3.0 * f64::from(k / 3)]).collect();
@@ -143,16 +143,14 @@ fn missions_are_refused_if_and_only_if_no_motion_exists() {
         }
         let ids: Vec<(usize, [usize; 2])> = (100..).zip(edges.clone()).collect();
         let text = vehicles(starts) + &format!("{{\"id\": \"m\", \"vehicle\": \"a\", \"to\": {goal}}}");
-        let (reasons, _) = run(&site(&points, &ids), &text);
+        let (reasons, duration) = run(&site(&points, &ids), &text);
         let is_refused =
             reasons[0].as_ref().is_some_and(|why| why.contains("cannot make way for") || why.contains("never leave"));
         let [surely, maybe] = [1.1, 0.3].map(|clearance| comes_through(&points, &edges, starts, goal, clearance));
-        assert!(!(surely && is_refused), "{seed}: {starts:?} to {goal}, {edges:?}: {reasons:?}");
-        assert!(maybe || is_refused, "{seed}: {starts:?} to {goal}, {edges:?}: {reasons:?}");
+        assert!(maybe || is_refused && duration < 1.0, "{seed}: {starts:?} to {goal}, {edges:?}: {reasons:?}");
+        assert!(!surely || reasons[0].is_none(), "{seed}: {starts:?} to {goal}, {edges:?}: {reasons:?} {duration}");
         refused += usize::from(is_refused);
         done += usize::from(reasons[0].is_none());
-        others += usize::from(!is_refused && reasons[0].is_some());
     }
-    eprintln!("{refused} refused, {done} done, {others} not done");
-    assert!(refused > 20 && done > 20, "{refused} {done} {others}");
+    assert!(refused > 20 && done > 20, "{refused} {done}");
 }
