@@ -36,6 +36,7 @@
 //! route_admission       routes and precedence for a mission
 //! precedence_switching  precedence that is reversed while robots drive
 //! unblocking            moves robots out of the way of a mission
+//! stretch               more way for a robot, and sequences of it
 //! joint_advance         robots that move up together, where nothing else is admitted
 //! shunting              robots with missions of a file that move one after the other, where nothing else is admitted
 //! joint_phase           the times at which they do
@@ -107,6 +108,7 @@ pub mod site_changes;
 mod speed_limits;
 mod starvation;
 mod streets;
+mod stretch;
 mod task_assignment;
 mod tasks;
 mod timetable;

@@ -15,6 +15,7 @@ use super::route_graph::DeparturePose;
 use super::run_state::LifelongState;
 use super::scheduling::{AGAIN, TRIES};
 use super::starvation::ROUNDS;
+use super::stretch::Stretch;
 use std::time::{Duration, Instant};
 
 /// Robots are moved up together if all of them have stood at their ends for the first time while missions wait, or if nobody has
@@ -28,13 +29,6 @@ const LOOK: f64 = 1.5;
 /// the second, or twice the time before, and is the first again otherwise \[s\].
 const PERIOD: f64 = 60.0;
 const SOON: f64 = 300.0;
-
-/// More way for a robot.
-#[derive(Clone, Debug)]
-pub(super) struct Stretch {
-    pub(super) robot: usize,
-    pub(super) atoms: Vec<usize>,
-}
 
 /// Robots with more way, and the orders of the whole fleet with it.
 pub(super) struct JointAdmission {

@@ -3,7 +3,7 @@
 //! A mission is a list of stops. The vehicle gets them one after the other, each as a mission of its own, with the next one known
 //! before it is at the present one.
 
-use super::shunting::Shunting;
+use super::stretch::StretchSequence;
 use pcr_formats::missions::{FleetMissions, MissionRequest};
 
 /// What became of a mission.
@@ -61,7 +61,7 @@ pub(super) struct OwnMissions {
     /// For each vehicle whether it stands where it can never leave, and the place for which that is known.
     pub(super) is_parked: Vec<bool>,
     pub(super) looked_at: Vec<Option<usize>>,
-    pub(super) shunting: Shunting,
+    pub(super) shunting: StretchSequence,
     /// Whether vehicles can come to a node from which they cannot come back.
     pub(super) is_one_way: bool,
 }
@@ -86,7 +86,7 @@ impl OwnMissions {
             progress: 0.0,
             is_parked: vec![false; count],
             looked_at: vec![None; count],
-            shunting: Shunting::default(),
+            shunting: StretchSequence::default(),
             is_one_way,
         }
     }

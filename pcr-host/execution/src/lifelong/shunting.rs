@@ -5,12 +5,12 @@
 //! goes first, in the end all are where the sequence leads.
 
 use super::endpoints::reached;
-use super::joint_advance::Stretch;
 use super::own_missions::OwnMissions;
 use super::route_graph::{DeparturePose, RouteGraph};
 use super::run_state::LifelongState;
+use super::stretch::Stretch;
 use std::cmp::Reverse;
-use std::collections::{BinaryHeap, HashSet, VecDeque};
+use std::collections::{BinaryHeap, HashSet};
 
 /// Vehicles are moved one after the other when all have stood for this long while missions wait, or if for the second time nobody has had
 /// a goal on its way; and again after the third if there was no such sequence. Where one might come to a place from which no way leads
@@ -24,17 +24,6 @@ const STATES: usize = 30_000;
 
 /// Time that a sequence counts more for each edge on which a vehicle outside of the search stands \[ms\].
 const OTHERS: u64 = 100_000;
-
-/// The moves that are left.
-#[derive(Clone, Debug, Default)]
-pub(super) struct Shunting {
-    moves: VecDeque<Stretch>,
-    /// The number of changes of the site that were present when they were found.
-    present: usize,
-    next_try: f64,
-    /// Time since which missions wait and nobody has a goal on its way \[s\].
-    idle_since: Option<f64>,
-}
 
 /// A state of a search: the nodes of its vehicles and the number of stops that the first one has reached, the state before it, and the
 /// vehicle that moved, with its edge.
