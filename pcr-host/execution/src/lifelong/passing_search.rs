@@ -13,8 +13,8 @@ use super::route_graph::DeparturePose;
 use std::cmp::Reverse;
 use std::collections::{BTreeSet, BinaryHeap, HashSet};
 
-/// Largest number of looks at a pair of robots in one search, and in all searches for a file.
-const LOOKS: [usize; 2] = [1_000_000, 12_000_000];
+/// Largest number of looks at a robot, or at a pair of robots, in one search, and in all searches for a file.
+const LOOKS: [usize; 2] = [150_000, 1_500_000];
 
 /// Time that a way counts more for each edge on which a robot outside of the search stands \[ms\].
 const OTHERS: u64 = 100_000;
@@ -161,6 +161,7 @@ impl<'s> PassingSearch<'s> {
         };
         let mut found = Vec::new();
         for target in targets {
+            *looks = looks.saturating_sub(1);
             let mut next = key.to_vec();
             next[member] = target as u32;
             let mut open = vec![next];

@@ -10,7 +10,7 @@ use super::route_graph::{DeparturePose, RouteGraph};
 use super::run_state::LifelongState;
 use super::stretch::Stretch;
 use std::cmp::Reverse;
-use std::collections::{BinaryHeap, HashSet};
+use std::collections::{BinaryHeap, HashSet, VecDeque};
 
 /// Vehicles are moved one after the other when all have stood for this long while missions wait, or if for the second time nobody has had
 /// a goal on its way; and again after the third if there was no such sequence. Where one might come to a place from which no way leads
@@ -47,7 +47,7 @@ impl LifelongState {
         if is_due && (self.quiet > quiet || (is_fruitless && stand)) {
             shunting.present = self.world.present.len();
             shunting.next_try = now + AGAIN;
-            let found = self.waiting().into_iter().find_map(|robot| self.sequence(own, robot));
+            let found = self.waiting().into_iter().find_map(|robot| self.sequence(own, robot, now));
             shunting.moves = found.unwrap_or_default().into();
         }
         // Nobody gets another way until all stand.
@@ -57,14 +57,14 @@ impl LifelongState {
             let it = &self.robots[next.robot];
             let begins = next.atoms.first().is_some_and(|&first| self.site.atoms[first].ends[0] == it.way.end());
             if changed || !begins || it.cut.is_some() {
-                shunting.moves.clear();
+                (shunting.moves, shunting.next_try) = (VecDeque::new(), now + AGAIN);
             } else if let Some(found) = self.admit_together(std::slice::from_ref(next), now) {
                 self.take_together(std::slice::from_ref(next), found, now);
                 shunting.moves.pop_front();
                 shunting.next_try = now;
             } else {
                 if stand {
-                    shunting.moves.clear();
+                    (shunting.moves, shunting.next_try) = (VecDeque::new(), now + AGAIN);
                 }
                 break;
             }
@@ -77,11 +77,11 @@ impl LifelongState {
 
     /// Moves of vehicles one after the other until one of them is at the next stop of its mission, with the rest of the mission possible
     /// in the same way; `None` if there are none, or too many states to look at.
-    fn sequence(&self, own: &OwnMissions, root: usize) -> Option<Vec<Stretch>> {
+    fn sequence(&self, own: &OwnMissions, root: usize, now: f64) -> Option<Vec<Stretch>> {
         let mission = &own.missions[own.current[root]?];
         let stops = mission.request.stops.iter().skip(mission.reached.len());
         let stops: Vec<usize> = stops.map(|&stop| self.node_of_layer(root, stop)).collect();
-        let is_stranded = |robot: usize| self.robots[robot].cut.is_some() || self.world.stranded[robot] > 0.0;
+        let is_stranded = |robot: usize| self.robots[robot].cut.is_some() || self.world.is_stranded(robot, now);
         let mut closed: Vec<bool> = self.world.closed.iter().map(|&closed| closed > 0).collect();
         let (mut outside, mut group) = (Vec::new(), vec![root]);
         for robot in (0..self.robots.len()).filter(|&robot| robot != root) {
