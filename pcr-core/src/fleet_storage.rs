@@ -264,6 +264,15 @@ impl<'f, 'o, S: Scalar, const A: usize, const N: usize, const F: usize> NewAgent
         Ok(self)
     }
 
+    /// Appends an arc of this radius \[m\] and length \[m\] on which the body keeps its heading.
+    ///
+    /// # Errors
+    /// As [`Path::steady_arc`](crate::Path::steady_arc).
+    pub fn steady_arc(mut self, radius: S, turn: TurnSide, length: S) -> Result<Self, InvalidInput> {
+        self.append_steady_arc(radius, turn, length)?;
+        Ok(self)
+    }
+
     /// Appends an arc of this radius \[m\] that turns by `sweep` \[rad\], to the left if positive.
     ///
     /// # Errors

@@ -176,10 +176,14 @@ impl<'a, S: Scalar> Motion<'a, S> {
         // Corners are placed by their vectors from the centre of an arc. The length of a turn is that at its lever.
         let extent = self.extent + self.spread.double() + diameter;
         let segments = self.path.segments();
-        let levers = segments.iter().filter_map(|segment| segment.curve().lever());
+        let turning = segments.iter().filter(|segment| !segment.is_steady());
+        let levers = turning.filter_map(|segment| segment.curve().lever());
         let lever = levers.map(|lever| self.spread.quotient(lever)).fold(S::ZERO, S::max);
         let levered = |length: S| length + length.times(lever).narrow();
-        let drift = levered(self.drift) + S::slack(extent).times(lever).narrow();
+        // The heading of the body behind a steady arc is rounded, and turns all corners that follow.
+        let steady = segments.iter().filter(|segment| segment.is_steady());
+        let turned = steady.fold(S::ZERO, |sum, _| sum + S::rounding(self.spread).double().double().double());
+        let drift = levered(self.drift) + S::slack(extent).times(lever).narrow() + turned;
         let allowance = levered(self.allowance);
         let has_corners = !self.corners.is_empty();
         let corners = self.corners.iter().flat_map(|corner| [corner.at.x, corner.at.y]);
@@ -187,7 +191,9 @@ impl<'a, S: Scalar> Motion<'a, S> {
             let ahead = body.vector(self.spread, S::ZERO);
             [ahead.x, ahead.y]
         });
-        let digest = corners.chain(bodies).fold(self.digest, |sum, coordinate| digest(sum, coordinate.digest()));
+        let sum = corners.chain(bodies).fold(self.digest, |sum, coordinate| digest(sum, coordinate.digest()));
+        let steady = segments.iter().map(Segment::is_steady).enumerate().filter(|&(_, steady)| steady && has_corners);
+        let digest = steady.fold(sum, |sum, (place, _)| digest(sum, place as u32));
         Self { extent, lever, drift, allowance, digest, ..self }
     }
 

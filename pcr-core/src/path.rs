@@ -66,6 +66,28 @@ impl<S: Scalar, const N: usize> Path<S, N> {
         Ok(self)
     }
 
+    /// Appends an arc of this radius \[m\] and length \[m\] on which the body keeps its heading, as a vehicle with steered wheels only can. Behind it the
+    /// body goes on at the angle to the direction of travel that it has there, until [`Path::facing`].
+    ///
+    /// # Errors
+    /// As [`Path::arc`]; [`InvalidInput::NeedsOutlines`].
+    ///
+    /// ```
+    /// # use pcr_core::{Motion, Outline, Path, Point, Pose, Profile, Radians, TurnSide};
+    /// # let start = Pose { position: Point::new(0.0, 0.0), heading: Radians(0.0) };
+    /// // A platform that looks east drives east, around a bend, and north, sideways.
+    /// let quarter = core::f64::consts::FRAC_PI_2;
+    /// let path = Path::<f64, 3>::starting_at(start)?.line(2.0)?.steady_arc(1.0, TurnSide::Left, quarter)?.line(1.0)?;
+    /// let platform = Outline::<f64, 4>::rectangle(0.6, 0.6, 0.4, 0.4, 0.0)?;
+    /// let profile = Profile::<f64, 1>::from_pieces(1.0, [(3.0 + quarter, 0.0)])?;
+    /// assert!(Motion::with_outline(path.as_path(), profile.as_profile(), &platform, 0.0).is_ok());
+    /// # Ok::<(), pcr_core::InvalidInput>(())
+    /// ```
+    pub fn steady_arc(mut self, radius: S, turn: TurnSide, length: S) -> Result<Self, InvalidInput> {
+        self.append_steady_arc(radius, turn, length)?;
+        Ok(self)
+    }
+
     /// Appends an arc of this radius \[m\] that turns by `sweep` \[rad\], to the left if positive, by at most a full
     /// turn in either direction. Many file formats describe arcs this way. The length is radius · |sweep|, rounded
     /// once. `sweep` is a scalar and not an angle of the format, because binary angles only reach half a turn.
@@ -210,6 +232,19 @@ pub(crate) trait SegmentChain<S: Scalar> {
     fn append_arc(&mut self, radius: S, turn: TurnSide, length: S) -> Result<(), InvalidInput> {
         let next = self.last()?.then_arc(radius, turn, length)?;
         self.append(next)
+    }
+
+    fn append_steady_arc(&mut self, radius: S, turn: TurnSide, length: S) -> Result<(), InvalidInput> {
+        let last = self.last()?;
+        let mut next = last.then_steady_arc(radius, turn, length)?;
+        if next.length > S::ZERO {
+            if let Some(facing) = *self.body() {
+                next = next.faced(facing)?;
+            }
+            *self.body() = Some(next.body_after());
+            self.push(next)?;
+        }
+        Ok(())
     }
 
     fn append_pivot(&mut self, lever: S, turn: TurnSide, length: S) -> Result<(), InvalidInput> {

@@ -16,6 +16,8 @@ pub(crate) use proximity::{ROW, in_box};
 
 use crate::error::{self, InvalidInput, in_range};
 use crate::geometry::{Aabb, Direction, Point, Pose, Vector};
+#[cfg(feature = "outlines")]
+use crate::outline::turned_back;
 use crate::scalar::{Angle, AngleSector, Scalar, Unit};
 
 /// Side to which an arc bends.
@@ -72,9 +74,12 @@ pub struct Segment<S: Scalar> {
     pub(crate) direction: Direction<S>,
     pub(crate) heading: S::Angle,
     heading_at_end: S::Angle,
-    /// Angle from the direction of travel to the heading of the body. Discs have none.
+    /// Angle from the direction of travel to the heading of the body; on a steady arc that at its start. Discs have none.
     #[cfg(feature = "outlines")]
     facing: Direction<S>,
+    /// Whether the body keeps its heading on an arc.
+    #[cfg(feature = "outlines")]
+    steady: bool,
     pub(crate) curve: Curve<S>,
     /// Length of a full turn \[m\]: of the circle of an arc, or of a turn in place.
     pub(crate) circumference: S,
@@ -129,6 +134,8 @@ impl<S: Scalar> Segment<S> {
             heading_at_end: pose.heading,
             #[cfg(feature = "outlines")]
             facing: Direction::X,
+            #[cfg(feature = "outlines")]
+            steady: false,
             curve: Curve::Line,
             circumference: S::ZERO,
             length: S::ZERO,
@@ -165,6 +172,25 @@ impl<S: Scalar> Segment<S> {
         error::radius(radius)?;
         in_range(radius.double(), "diameter of the arc")?;
         self.then_turning(Curve::Arc { radius, turn }, [radius, length], turn)
+    }
+
+    /// The arc of [`Segment::then_arc`] on which the body keeps its heading, that at its start, as a vehicle with steered wheels only can. On the segments
+    /// that continue it the body is at the angle to the direction of travel that it has at the end of the arc.
+    ///
+    /// # Errors
+    /// As [`Segment::then_arc`]; [`InvalidInput::NeedsOutlines`].
+    pub fn then_steady_arc(&self, radius: S, turn: TurnSide, length: S) -> Result<Self, InvalidInput> {
+        self.then_arc(radius, turn, length)?.steadied()
+    }
+
+    #[cfg(feature = "outlines")]
+    fn steadied(self) -> Result<Self, InvalidInput> {
+        Ok(Self { steady: true, ..self })
+    }
+
+    #[cfg(not(feature = "outlines"))]
+    fn steadied(self) -> Result<Self, InvalidInput> {
+        Err(InvalidInput::NeedsOutlines)
     }
 
     /// The turn in place of this length \[m\] that continues the path at the end of `self`: the reference point stays, and the
@@ -223,7 +249,8 @@ impl<S: Scalar> Segment<S> {
     }
 
     /// Returns this segment for a body whose heading is at this angle to the direction of travel, counted to the left: 0 along it, half a turn
-    /// against it, in reverse gear, anything else for vehicles that drive sideways. The segments that continue it have the same angle. An
+    /// against it, in reverse gear, anything else for vehicles that drive sideways; on a steady arc that at its start. The segments that continue it have the same angle, but
+    /// behind a steady arc. An
     /// [`Outline`](crate::Outline) turns by it; to a disc it makes no difference. To change gear, turn the direction of travel as well: then the
     /// heading goes on ([`Path::reverse`](crate::Path::reverse)).
     ///
@@ -267,14 +294,37 @@ impl<S: Scalar> Segment<S> {
         Direction::X
     }
 
+    /// Whether the body keeps its heading, although the direction of travel turns ([`Segment::then_steady_arc`]).
+    pub fn is_steady(&self) -> bool {
+        #[cfg(feature = "outlines")]
+        return self.steady;
+        #[cfg(not(feature = "outlines"))]
+        false
+    }
+
+    /// Angle from the direction of travel to the heading of the body behind this segment, as a direction.
+    pub(crate) fn body_after(&self) -> Direction<S> {
+        if !self.is_steady() {
+            return self.body();
+        }
+        let half = self.signed_half_turn();
+        turned_back(turned_back(self.body(), half), half)
+    }
+
+    /// Angle by which an arc or a turn in place turns up to its middle, as a direction.
+    fn signed_half_turn(&self) -> Direction<S> {
+        if self.mirrored() { self.half_turn.mirrored() } else { self.half_turn }
+    }
+
     /// Whether the heading of the body jumps at the end of the segment, where another one or nothing follows, so that a point at the distance
     /// `reach` from the reference point moves by more than `by` \[m\].
     pub(crate) fn jumps_before(&self, next: Option<&Self>, reach: S, by: S) -> bool {
-        let half = if self.mirrored() { self.half_turn.mirrored() } else { self.half_turn };
-        let before = self.direction.plus(half).plus(half).plus(self.body());
+        let half = self.signed_half_turn();
+        let turned = if self.is_steady() { self.direction } else { self.direction.plus(half).plus(half) };
+        let before = turned.plus(self.body());
         let after = match next {
             Some(next) => next.direction.plus(next.body()),
-            None => self.direction_after().plus(self.body()),
+            None => self.direction_after().plus(self.body_after()),
         };
         before.dot(after) < S::Unit::ZERO || reach.scale(before.cross(after)).abs() > by
     }
@@ -296,7 +346,9 @@ impl<S: Scalar> Segment<S> {
             heading: self.heading_at_end,
             heading_at_end: self.heading_at_end,
             #[cfg(feature = "outlines")]
-            facing: self.facing,
+            facing: self.body_after(),
+            #[cfg(feature = "outlines")]
+            steady: false,
             curve,
             circumference,
             length,
@@ -331,6 +383,10 @@ impl<S: Scalar> Segment<S> {
             let (sin, cos) = S::Angle::half_subtended(from, lever).sin_cos();
             let half = Direction { cos, sin: if self.mirrored() { -sin } else { sin } };
             part.direction = self.direction.plus(half).plus(half);
+            #[cfg(feature = "outlines")]
+            if self.steady {
+                part.facing = turned_back(turned_back(self.facing, half), half);
+            }
         }
         part.lay();
         part

@@ -14,7 +14,7 @@
 
 use crate::geometry::{Direction, Interval, Point, Vector};
 use crate::motion::Motion;
-use crate::outline::placed::{Carried, Corners};
+use crate::outline::placed::{Carriage, Carried, Corners};
 use crate::outline::{Corner, opposite};
 use crate::pair::outline::distance::separation_along;
 use crate::query::legs::Leg;
@@ -23,14 +23,14 @@ use crate::scalar::{Scalar, Wide};
 /// An outline in motion at one time. All bounds hold until the end of its window.
 struct Body<S: Scalar> {
     corners: Corners<S>,
-    /// Velocity of the reference point on a line \[m/s\].
+    /// Velocity of the reference point, if the body does not turn \[m/s\].
     velocity: Vector<S>,
-    /// Centre of an arc, and the rate of turn, left positive \[rad/s\].
+    /// The centre about which it turns, and the rate of turn, left positive \[rad/s\].
     turn: Option<(Vector<S>, S)>,
-    /// Largest rate of turn on an arc, or speed on a line.
+    /// Largest rate of turn, or speed of a body that does not turn.
     rate: S,
-    /// Largest change of that rate in a second, and on an arc the square of the rate of turn more: multiplied by a distance from the centre it
-    /// bounds an acceleration.
+    /// Largest change of that rate in a second, and of a body that turns the square of the rate of turn more: multiplied by a distance from the centre it
+    /// bounds an acceleration. On a steady arc largest acceleration, with that towards the centre.
     change: S,
 }
 
@@ -41,12 +41,18 @@ impl<S: Scalar> Body<S> {
         let corners = carried.at(length - segment.from, from);
         let ([now, before, after], acceleration) = leg.speeds([at, since, until]);
         let most = before.max(after);
-        match carried.bend {
-            None => {
+        match carried.carriage {
+            Carriage::Straight => {
                 let velocity = carried.segment.direction.vector(now, S::ZERO);
                 Self { corners, velocity, turn: None, rate: most, change: acceleration }
             }
-            Some(lever) => {
+            Carriage::Circling(circle) => {
+                let direction = carried.segment.direction.plus(carried.turn(length - segment.from));
+                let velocity = direction.vector(now, S::ZERO);
+                let inward = up(most.times(up(most.quotient(circle.radius))).narrow());
+                Self { corners, velocity, turn: None, rate: most, change: up(acceleration + inward) }
+            }
+            Carriage::Turning(lever) => {
                 let (rate, most) = (now.quotient(lever), up(most.quotient(lever)));
                 let turn = (carried.origin - from, rate.negate_if(segment.mirrored()));
                 let change = up(most.times(most).narrow() + acceleration.quotient(lever));

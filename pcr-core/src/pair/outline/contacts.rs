@@ -17,7 +17,7 @@
 
 use crate::array_vec::ArrayVec;
 use crate::geometry::{Direction, Interval, Vector};
-use crate::outline::placed::Carried;
+use crate::outline::placed::{Carriage, Carried, Circle};
 use crate::outline::{Corner, MOST_CORNERS, opposite, supports, turned_back};
 use crate::scalar::{Scalar, Wide};
 
@@ -39,43 +39,80 @@ pub(crate) fn contacts<S: Scalar>(
     other: Standing<'_, S>,
     mut found: impl FnMut(S, Direction<S>),
 ) {
-    if moving.bend.is_some() {
-        corners_at_edges(moving, other, &mut found);
-        edges_at_corners(moving, other, &mut found);
-        corners_at_corners(moving, other, true, &mut found);
-    } else if let Some(ends) = chord(moving, other) {
-        ends.into_iter().for_each(|(length, normal)| found(length, normal));
+    match moving.carriage {
+        Carriage::Straight => {
+            if let Some(ends) = chord(moving, other) {
+                ends.into_iter().for_each(|(length, normal)| found(length, normal));
+            }
+        }
+        Carriage::Turning(_) => {
+            corners_at_edges(moving, other, false, &mut found);
+            edges_at_corners(moving, other, false, &mut found);
+            corners_at_corners(moving, other, false, &mut found);
+        }
+        Carriage::Circling(circle) => contacts_on_circle(moving, circle, other, false, &mut found),
     }
 }
 
-/// Calls `found` with the lengths at which the origin of a pivot, at `point`, is inside of the moving outline or touches it
-/// while the nearest point of its boundary along some normal is at the distance `depth`: the far values of Theorem 2. More are found than count.
+/// Calls `found` with the lengths at which the outlines overlap such that points of them are `other.radius` apart along a common normal, each on the inner side
+/// of the other one: contacts at the distance `-other.radius`, the far values of Theorems 2 and 3. The normal is that of the outline that stands, outward. Of
+/// a single point more are found than count.
 pub(crate) fn far_contacts<S: Scalar>(
     moving: &Carried<'_, S>,
-    point: &Corner<S>,
-    depth: S,
-    slack: S,
+    other: Standing<'_, S>,
     mut found: impl FnMut(S, Direction<S>),
 ) {
-    let corners = core::slice::from_ref(point);
-    if moving.bend.is_some() {
-        edges_at_corners(moving, Standing { corners, radius: -depth, slack }, &mut found);
-        corners_at_corners(moving, Standing { corners, radius: depth, slack }, false, &mut found);
-        return;
-    }
-    let along = moving.segment.direction;
-    for corner in moving.corners.as_slice() {
-        let way = between(corner.at, point.at);
-        if let Some(half) = half_chord(way.across(along), depth) {
-            for length in [way.along(along) - half, way.along(along) + half] {
-                found(length, unit(between(corner.at, point.at), length, along, depth));
-            }
+    match moving.carriage {
+        Carriage::Straight => far_contacts_on_line(moving, other, &mut found),
+        Carriage::Turning(_) => {
+            corners_at_edges(moving, other, true, &mut found);
+            edges_at_corners(moving, other, true, &mut found);
+            corners_at_corners(moving, other, true, &mut found);
         }
-        let out = way.along(corner.outward);
-        if let Some(length) = (out + depth).quotient_unit(corner.outward.dot(along))
-            && is_on(corner, between(along.vector(length, S::ZERO), way), slack)
-        {
-            found(length, opposite(corner.outward));
+        Carriage::Circling(circle) => contacts_on_circle(moving, circle, other, true, &mut found),
+    }
+}
+
+/// [`far_contacts`] on a line.
+fn far_contacts_on_line<S: Scalar>(
+    moving: &Carried<'_, S>,
+    other: Standing<'_, S>,
+    found: &mut impl FnMut(S, Direction<S>),
+) {
+    let (along, depth, slack) = (moving.segment.direction, other.radius, other.slack);
+    let corners = moving.corners.as_slice();
+    let is_point = other.corners.len() == 1;
+    for (index, corner) in corners.iter().enumerate() {
+        for (place, point) in other.corners.iter().enumerate() {
+            let way = between(corner.at, point.at);
+            let supported = |normal| {
+                is_point
+                    || supports(corners, index, opposite(normal), slack)
+                        && supports(other.corners, place, normal, slack)
+            };
+            if let Some(half) = half_chord(way.across(along), depth) {
+                for length in [way.along(along) - half, way.along(along) + half] {
+                    let normal = unit(way, length, along, depth);
+                    if supported(normal) {
+                        found(length, normal);
+                    }
+                }
+            }
+            // The corner of one and the edge that begins at the corner of the other, as in `chord`.
+            let ahead = (way.along(corner.outward) + depth).quotient_unit(corner.outward.dot(along));
+            if let Some(length) = ahead.filter(|_| corner.length > S::ZERO)
+                && is_on(corner, between(along.vector(length, S::ZERO), way), slack)
+                && supports(other.corners, place, opposite(corner.outward), slack)
+            {
+                found(length, opposite(corner.outward));
+            }
+            let ahead = (way.along(point.outward) - depth).quotient_unit(point.outward.dot(along));
+            if let Some(length) = ahead.filter(|_| point.length > S::ZERO)
+                && is_on(point, between(way, along.vector(length, S::ZERO)), slack)
+                && supports(corners, index, opposite(point.outward), slack)
+            {
+                found(length, point.outward);
+            }
         }
     }
 }
@@ -91,16 +128,29 @@ pub(crate) fn line_contacts<S: Scalar>(
 ) {
     let corners = moving.corners.as_slice();
     let down = opposite(normal);
-    if moving.bend.is_none() {
-        let along = moving.segment.direction;
-        for (index, corner) in corners.iter().enumerate() {
-            if supports(corners, index, down, slack)
-                && let Some(length) = (level - corner.at.along(normal)).quotient_unit(normal.dot(along))
-            {
-                found(length, add(corner.at, along.vector(length, S::ZERO)));
+    let lowest = || corners.iter().enumerate().filter(|&(index, _)| supports(corners, index, down, slack));
+    match moving.carriage {
+        Carriage::Straight => {
+            let along = moving.segment.direction;
+            for (_, corner) in lowest() {
+                if let Some(length) = (level - corner.at.along(normal)).quotient_unit(normal.dot(along)) {
+                    found(length, add(corner.at, along.vector(length, S::ZERO)));
+                }
             }
+            return;
         }
-        return;
+        Carriage::Circling(circle) => {
+            for (_, corner) in lowest() {
+                let level = level - corner.at.along(normal);
+                for across in crossings(circle.radius, level) {
+                    let towards = normal.plus(direction(level, across, circle.radius));
+                    let place = add(corner.at, normal.vector(level, across));
+                    found(moving.length_towards(circle, towards), place);
+                }
+            }
+            return;
+        }
+        Carriage::Turning(_) => {}
     }
     for (index, corner) in corners.iter().enumerate() {
         let far = corner.at.norm_squared().sqrt();
@@ -113,63 +163,66 @@ pub(crate) fn line_contacts<S: Scalar>(
     }
 }
 
-/// VE on an arc.
+/// VE on an arc. Of far contacts the corner is inside of the edge.
 fn corners_at_edges<S: Scalar>(
     moving: &Carried<'_, S>,
     other: Standing<'_, S>,
+    far: bool,
     found: &mut impl FnMut(S, Direction<S>),
 ) {
     let corners = moving.corners.as_slice();
+    let radius = signed(other, far);
     for (index, corner) in corners.iter().enumerate() {
-        let far = corner.at.norm_squared().sqrt();
+        let distance = corner.at.norm_squared().sqrt();
         for edge in other.corners.iter().filter(|edge| edge.length > S::ZERO) {
-            let offset = edge.at.along(edge.outward) + other.radius;
-            for across in crossings(far, offset) {
+            let offset = edge.at.along(edge.outward) + radius;
+            for across in crossings(distance, offset) {
                 if !is_within(across - edge.at.across(edge.outward), edge.length, other.slack) {
                     continue;
                 }
-                let to = edge.outward.plus(direction(offset, across, far));
-                let turn = turned_back(to, direction_of(corner.at, far));
+                let to = edge.outward.plus(direction(offset, across, distance));
+                let turn = turned_back(to, direction_of(corner.at, distance));
                 let normal = opposite(edge.outward);
                 if supports(corners, index, turned_back(normal, turn), other.slack) {
-                    found(moving.length_of(turn), normal);
+                    found(moving.length_of(turn), if far { edge.outward } else { normal });
                 }
             }
         }
     }
 }
 
-/// EV on an arc. With a negative radius the corner is inside of the edge.
+/// EV on an arc. Of far contacts the corner is inside of the edge.
 fn edges_at_corners<S: Scalar>(
     moving: &Carried<'_, S>,
     other: Standing<'_, S>,
+    far: bool,
     found: &mut impl FnMut(S, Direction<S>),
 ) {
+    let radius = signed(other, far);
     for (index, corner) in other.corners.iter().enumerate() {
-        let far = corner.at.norm_squared().sqrt();
+        let distance = corner.at.norm_squared().sqrt();
         for edge in moving.corners.as_slice().iter().filter(|edge| edge.length > S::ZERO) {
-            let offset = edge.at.along(edge.outward) + other.radius;
-            for across in crossings(far, offset) {
+            let offset = edge.at.along(edge.outward) + radius;
+            for across in crossings(distance, offset) {
                 if !is_within(across - edge.at.across(edge.outward), edge.length, other.slack) {
                     continue;
                 }
-                let from = edge.outward.plus(direction(offset, across, far));
-                let turn = turned_back(direction_of(corner.at, far), from);
+                let from = edge.outward.plus(direction(offset, across, distance));
+                let turn = turned_back(direction_of(corner.at, distance), from);
                 let outward = turn.plus(edge.outward);
                 if supports(other.corners, index, opposite(outward), other.slack) {
-                    let normal = if other.radius < S::ZERO { opposite(outward) } else { outward };
-                    found(moving.length_of(turn), normal);
+                    found(moving.length_of(turn), if far { opposite(outward) } else { outward });
                 }
             }
         }
     }
 }
 
-/// VV on an arc, with or without the test of support.
+/// VV on an arc.
 fn corners_at_corners<S: Scalar>(
     moving: &Carried<'_, S>,
     other: Standing<'_, S>,
-    supported: bool,
+    far: bool,
     found: &mut impl FnMut(S, Direction<S>),
 ) {
     let (corners, radius) = (moving.corners.as_slice(), other.radius);
@@ -182,23 +235,90 @@ fn corners_at_corners<S: Scalar>(
             if less.abs() > radius || radius > sum || own <= S::ZERO || their <= S::ZERO {
                 continue;
             }
-            let near = (radius - less).times(radius + less).sqrt();
-            let far = (sum - radius).times(sum + radius).sqrt();
-            let half = direction(far, near, (near.times(near) + far.times(far)).sqrt());
-            let (angle, middle) = (half.plus(half), direction_of(point.at, their));
-            for to in [middle.plus(angle), turned_back(middle, angle)] {
+            for to in meetings(radius, less, sum, direction_of(point.at, their)) {
                 let turn = turned_back(to, direction_of(corner.at, own));
                 let way = between(to.vector(own, S::ZERO), point.at);
                 let normal = direction_of(way, radius);
-                let counts = !supported
-                    || supports(corners, index, turned_back(normal, turn), other.slack)
-                        && supports(other.corners, place, opposite(normal), other.slack);
+                let outward = if far { opposite(normal) } else { normal };
+                let counts = far && other.corners.len() == 1
+                    || supports(corners, index, turned_back(outward, turn), other.slack)
+                        && supports(other.corners, place, opposite(outward), other.slack);
                 if counts {
                     found(moving.length_of(turn), normal);
                 }
             }
         }
     }
+}
+
+/// All forms on a circle along which the moving outline does not turn, so that most tests of support do not depend on the length. `ϱ u` is the place of the
+/// reference point: a corner a is at `a + ϱ u`, and `ϱ u` meets the line or circle that belongs to a pair of features.
+fn contacts_on_circle<S: Scalar>(
+    moving: &Carried<'_, S>,
+    circle: Circle<S>,
+    other: Standing<'_, S>,
+    far: bool,
+    found: &mut impl FnMut(S, Direction<S>),
+) {
+    let corners = moving.corners.as_slice();
+    let (signed, slack) = (signed(other, far), other.slack);
+    for (index, own) in corners.iter().enumerate() {
+        for (place, their) in other.corners.iter().enumerate() {
+            let way = between(own.at, their.at);
+            // VE: (a + ϱ u - b) m = R for the edge at b.
+            let normal = opposite(their.outward);
+            if their.length > S::ZERO && supports(corners, index, normal, slack) {
+                let level = way.along(their.outward) + signed;
+                for across in crossings(circle.radius, level) {
+                    if is_within(across - way.across(their.outward), their.length, slack) {
+                        let towards = their.outward.plus(direction(level, across, circle.radius));
+                        found(moving.length_towards(circle, towards), if far { their.outward } else { normal });
+                    }
+                }
+            }
+            // EV: (b - a - ϱ u) m = R for the edge at a.
+            let normal = opposite(own.outward);
+            if own.length > S::ZERO && supports(other.corners, place, normal, slack) {
+                let level = way.along(own.outward) - signed;
+                for across in crossings(circle.radius, level) {
+                    if is_within(way.across(own.outward) - across, own.length, slack) {
+                        let towards = own.outward.plus(direction(level, across, circle.radius));
+                        found(moving.length_towards(circle, towards), if far { normal } else { own.outward });
+                    }
+                }
+            }
+            // VV: |b - a - ϱ u| = R.
+            let distance = way.norm_squared().sqrt();
+            let (less, sum) = (circle.radius - distance, circle.radius + distance);
+            if less.abs() > other.radius || other.radius > sum || distance <= S::ZERO {
+                continue;
+            }
+            for towards in meetings(other.radius, less, sum, direction_of(way, distance)) {
+                let rest = between(towards.vector(circle.radius, S::ZERO), way);
+                let normal = direction_of(rest, other.radius);
+                let outward = if far { opposite(normal) } else { normal };
+                if supports(corners, index, outward, slack) && supports(other.corners, place, opposite(outward), slack)
+                {
+                    found(moving.length_towards(circle, towards), normal);
+                }
+            }
+        }
+    }
+}
+
+/// The directions from the common centre of two circles to the points of one that are at the distance `radius` from a point of the other, which is in the direction `middle`; `less` and
+/// `sum` are the difference and the sum of the radii of both circles.
+fn meetings<S: Scalar>(radius: S, less: S, sum: S, middle: Direction<S>) -> [Direction<S>; 2] {
+    let near = (radius - less).times(radius + less).sqrt();
+    let far = (sum - radius).times(sum + radius).sqrt();
+    let half = direction(far, near, (near.times(near) + far.times(far)).sqrt());
+    let angle = half.plus(half);
+    [middle.plus(angle), turned_back(middle, angle)]
+}
+
+/// The distance of a contact, negative of a far one \[m\].
+fn signed<S: Scalar>(other: Standing<'_, S>, far: bool) -> S {
+    if far { -other.radius } else { other.radius }
 }
 
 /// The lengths between which an outline on a line is within the radius of the other, with the normals there: the hull of the chords that the line
@@ -287,7 +407,7 @@ pub(crate) fn between<S: Scalar>(from: Vector<S>, to: Vector<S>) -> Vector<S> {
     Vector { x: to.x - from.x, y: to.y - from.y }
 }
 
-fn add<S: Scalar>(a: Vector<S>, b: Vector<S>) -> Vector<S> {
+pub(crate) fn add<S: Scalar>(a: Vector<S>, b: Vector<S>) -> Vector<S> {
     Vector { x: a.x + b.x, y: a.y + b.y }
 }
 

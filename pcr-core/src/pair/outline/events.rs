@@ -4,15 +4,16 @@
 //! The structure can change (Theorem 1 of `docs/theory/outlines.md`) at a contact with the first outline at an end of its segment, and at a critical contact:
 //! one that the first outline neither enters nor leaves. On a line that is a contact whose normal is normal to the line. On an arc the line of the contact passes
 //! through the centre c, and the contact is an end of a slice about c (Theorem 2): the second outline at the distance s + R from c, where
-//! s is one of the critical radii of the first outline, which do not change while it turns.
+//! s is one of the critical radii of the first outline, which do not change while it turns. On a steady arc the normal is radial, and the contact is
+//! one with the first outline about the centre of its circle (Theorem 3).
 //!
 //! The ends of slices are extreme at the same contacts with the roles exchanged (Lemma 3). Their lengths along the second segment are
 //! closed forms of the normal.
 
-use super::contacts::{Standing, between, contacts, direction_of, far_contacts, is_within, line_contacts};
+use super::contacts::{Standing, add, between, contacts, direction_of, far_contacts, is_within, line_contacts};
 use crate::array_vec::ArrayVec;
 use crate::geometry::{Direction, Point, Vector};
-use crate::outline::placed::Carried;
+use crate::outline::placed::{Carriage, Carried, Circle, Corners};
 use crate::outline::{Corner, MOST_CORNERS, opposite, supports, turned_back};
 use crate::scalar::{Scalar, Unit, Wide};
 
@@ -84,7 +85,7 @@ impl<S: Scalar> Carriers<'_, S> {
         let length = first.segment.length;
         critical(second, first, [*radius, *slack], |place, own| {
             // A contact a little beyond an end of the first segment may be due to rounding.
-            if -*slack <= place && place <= length + *slack || first.bend.is_some() {
+            if -*slack <= place && place <= length + *slack || !first.is_straight() {
                 found.add(own);
             }
         });
@@ -102,9 +103,10 @@ fn critical<S: Scalar>(
     [radius, slack]: [S; 2],
     mut found: impl FnMut(S, S),
 ) {
-    if of.bend.is_none() {
-        critical_on_line(of, moving, [radius, slack], &mut found);
-        return;
+    match of.carriage {
+        Carriage::Straight => return critical_on_line(of, moving, [radius, slack], &mut found),
+        Carriage::Circling(circle) => return critical_on_circle([of, moving], circle, [radius, slack], &mut found),
+        Carriage::Turning(_) => {}
     }
     let all = criticals(of, slack);
     let centre = seen(of.origin, moving.origin);
@@ -127,7 +129,8 @@ fn critical<S: Scalar>(
             contacts(moving, standing, |length, normal| add(length, opposite(normal)));
         }
         if distance < slack {
-            far_contacts(moving, &centre, (-distance).max(slack), slack, &mut add);
+            let corners = core::slice::from_ref(&centre);
+            far_contacts(moving, Standing { corners, radius: (-distance).max(slack), slack }, &mut add);
         }
     }
 }
@@ -152,6 +155,37 @@ pub(super) fn critical_on_line<S: Scalar>(
                 let way = between(Vector { x: origin.x + own.at.x, y: origin.y + own.at.y }, corner);
                 found(length, way.along(along));
             }
+        });
+    }
+}
+
+/// Calls `found` with the critical contacts of an outline that moves along a circle without turning, as [`critical`] does. The normal of such a contact
+/// is radial, so the other one is at the distance R + ϱ, outside, or R - ϱ, inside of the circle, from the first one with its reference point at the centre
+/// (Theorem 3).
+fn critical_on_circle<S: Scalar>(
+    [of, moving]: [&Carried<'_, S>; 2],
+    circle: Circle<S>,
+    [radius, slack]: [S; 2],
+    found: &mut impl FnMut(S, S),
+) {
+    let shift = of.origin - moving.origin;
+    let mut corners = Corners::new(Corner::CENTRE);
+    for corner in of.corners.as_slice() {
+        corners.add(Corner { at: add(corner.at, shift), ..*corner }, true);
+    }
+    let at = |radius: S| Standing { corners: corners.as_slice(), radius, slack };
+    // The normal is that of the other outline.
+    contacts(moving, at(radius + circle.radius), |length, normal| {
+        found(length, of.length_towards(circle, opposite(normal)));
+    });
+    let inside = radius - circle.radius;
+    if inside > -slack {
+        contacts(moving, at(inside.max(slack)), |length, normal| found(length, of.length_towards(circle, normal)));
+    }
+    if inside < slack {
+        // Here it is that of the first one.
+        far_contacts(moving, at((-inside).max(slack)), |length, normal| {
+            found(length, of.length_towards(circle, opposite(normal)));
         });
     }
 }

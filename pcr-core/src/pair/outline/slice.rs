@@ -1,6 +1,6 @@
 //! Slices: the lengths of a segment at which the outline that moves along it is within the radius of one that stands.
 //!
-//! On a line that is one interval, because the difference of two convex sets is convex. On an arc the contacts cut the segment
+//! On a line that is one interval, because the difference of two convex sets is convex. Elsewhere the contacts cut the segment
 //! into gaps, in each of which the outlines are either nearer than R throughout or farther; the distance at one place
 //! of a gap tells which. So a contact that was found twice, or is none, only cuts an interval into two that are put together again.
 
@@ -27,7 +27,7 @@ pub(crate) type Parts<S> = ArrayVec<Interval<S>, MOST_PARTS>;
 pub(crate) fn parts<S: Scalar>(moving: &Carried<'_, S>, other: Standing<'_, S>) -> Option<Parts<S>> {
     let length = moving.segment.length;
     let mut parts = ArrayVec::new(Interval::new(S::ZERO, S::ZERO));
-    if moving.bend.is_none() {
+    if moving.is_straight() {
         if let Some(part) = part_of_line(moving, other) {
             parts.add(part, true);
         }

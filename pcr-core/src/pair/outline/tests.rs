@@ -3,6 +3,7 @@
 extern crate std;
 
 mod in_time;
+mod steady;
 
 use super::distance::tests::{Random, oracle};
 use super::events::Carriers;
@@ -127,6 +128,8 @@ fn a_rectangle_on_a_line_beside_a_wall_covers_one_interval() {
 enum Step {
     Line(f64),
     Arc(f64, f64),
+    /// An arc on which the body keeps its heading.
+    Steady(f64, f64),
     Pivot(f64, f64),
 }
 
@@ -228,6 +231,7 @@ impl Case {
                 match *step {
                     Step::Line(length) => path.line(S::of(length)),
                     Step::Arc(radius, length) => path.arc(S::of(radius.abs()), side(radius), S::of(length)),
+                    Step::Steady(radius, length) => path.steady_arc(S::of(radius.abs()), side(radius), S::of(length)),
                     Step::Pivot(lever, length) => path.pivot(S::of(lever.abs()), S::of(length / lever)),
                 }
                 .unwrap()
@@ -313,6 +317,7 @@ impl Exact {
             let (length, left) = (segment.length().float(), |turn| if turn == TurnSide::Left { 1.0 } else { -1.0 });
             match segment.curve() {
                 Curve::Line => Step::Line(length),
+                Curve::Arc { radius, turn } if segment.is_steady() => Step::Steady(left(turn) * radius.float(), length),
                 Curve::Arc { radius, turn } => Step::Arc(left(turn) * radius.float(), length),
                 Curve::Pivot { lever, turn } => Step::Pivot(left(turn) * lever.float(), length),
             }
@@ -336,13 +341,16 @@ impl Exact {
             if let Some([by, facing]) = self.gears.get(place) {
                 (heading, body) = (heading + by, *facing);
             }
-            let (Step::Line(length) | Step::Arc(_, length) | Step::Pivot(_, length)) = step;
+            let (Step::Line(length) | Step::Arc(_, length) | Step::Steady(_, length) | Step::Pivot(_, length)) = step;
             let way = rest.min(length);
             match step {
                 Step::Line(_) => (x, y) = (x + way * heading.cos(), y + way * heading.sin()),
-                Step::Arc(radius, _) => {
+                Step::Arc(radius, _) | Step::Steady(radius, _) => {
                     let next = heading + way / radius;
                     (x, y) = (x + radius * (next.sin() - heading.sin()), y - radius * (next.cos() - heading.cos()));
+                    if let Step::Steady(..) = step {
+                        body -= next - heading;
+                    }
                     heading = next;
                 }
                 Step::Pivot(lever, _) => heading += way / lever,

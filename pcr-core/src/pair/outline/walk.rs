@@ -41,7 +41,7 @@ impl<S: Scalar> Carriers<'_, S> {
         indices: [u16; 2],
         pieces: &mut PieceStore<S, P>,
     ) -> Result<(), CapacityError> {
-        if self.first.bend.is_none() && self.second.bend.is_none() {
+        if self.first.is_straight() && self.second.is_straight() {
             return self.find_on_lines(indices, pieces);
         }
         let events = self.events().ok_or(CapacityError::Contacts)?;
