@@ -144,7 +144,7 @@ fn back(agent: &Agent) -> SpeedLimitedPath {
         pose = [x, y, placed.heading_at_end()];
     }
     let turned = agent.path.iter().rev().map(|segment| match *segment {
-        PathSegment::Arc { radius, sweep } => PathSegment::Arc { radius, sweep: -sweep },
+        PathSegment::Arc { radius, sweep, .. } => PathSegment::arc(radius, -sweep),
         PathSegment::Line { .. } => *segment,
         _ => panic!("{segment:?}"),
     });

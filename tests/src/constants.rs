@@ -37,7 +37,7 @@ fn write_agent(text: &mut String, agent: &Agent) -> fmt::Result {
     for segment in &agent.path {
         let curve = match *segment {
             PathSegment::Line { .. } => "Curve::Line".to_owned(),
-            PathSegment::Arc { radius, sweep } => {
+            PathSegment::Arc { radius, sweep, .. } => {
                 let turn = if sweep > 0.0 { TurnSide::Left } else { TurnSide::Right };
                 format!("Curve::Arc {{ radius: number({radius:?}), turn: TurnSide::{turn:?} }}")
             }

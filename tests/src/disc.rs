@@ -101,7 +101,7 @@ impl Disc {
         for segment in &agent.path {
             match *segment {
                 PathSegment::Line { length } => legs.push(Leg::Line(length)),
-                PathSegment::Arc { radius, sweep } => {
+                PathSegment::Arc { radius, sweep, .. } => {
                     let turns = (sweep.abs() / TAU).ceil().max(1.0);
                     legs.extend(std::iter::repeat_n(Leg::arc(radius, sweep / turns), turns as usize));
                 }

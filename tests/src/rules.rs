@@ -408,7 +408,7 @@ fn agent(vehicle: &Vehicle, radius: f64) -> RawAgent {
         let length = piece.shape.length();
         let turn = heading.map(|heading| piece.heading - heading).filter(|turn| *turn != 0.0);
         let bend = match piece.shape {
-            PathSegment::Arc { radius, sweep } => Some(radius * sweep.signum()),
+            PathSegment::Arc { radius, sweep, .. } => Some(radius * sweep.signum()),
             _ => None,
         };
         let turns = turn.map(RawAngle::Radians).into_iter().collect();

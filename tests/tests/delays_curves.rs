@@ -160,7 +160,7 @@ fn limits_of_rotation_hold_at_constant_speed() {
 #[test]
 fn limits_of_rotation_hold_from_rest_to_rest() {
     let vehicle = read(InputFormat::Lif, CURVES, 0.3).vehicle;
-    let shape = PathSegment::Arc { radius: 2.0, sweep: 1.5 };
+    let shape = PathSegment::arc(2.0, 1.5);
     let mut edge =
         LayoutEdge::new(ElementId::Number(1), [0, 1], vec![PlacedSegment { start: [0.0; 2], heading: 0.0, shape }]);
     edge.rotation = Some(0.1);

@@ -109,7 +109,7 @@ fn after(polygon: &[Point], agent: &Agent, ways: &[f64]) -> Polygon {
                 x += own * (heading - facing).cos();
                 y += own * (heading - facing).sin();
             }
-            PathSegment::Arc { radius, sweep } => {
+            PathSegment::Arc { radius, sweep, .. } => {
                 // The centre is beside the way.
                 let (side, turned) = (radius.copysign(sweep), (own / radius).copysign(sweep));
                 let way = heading - facing;

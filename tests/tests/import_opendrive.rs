@@ -193,9 +193,7 @@ fn place(curve: &[PlacedSegment], length: f64) -> [f64; 2] {
     for piece in curve {
         if rest < piece.shape.length() {
             let shape = match piece.shape {
-                PathSegment::Arc { radius, sweep } => {
-                    PathSegment::Arc { radius, sweep: (rest / radius).copysign(sweep) }
-                }
+                PathSegment::Arc { radius, sweep, .. } => PathSegment::arc(radius, (rest / radius).copysign(sweep)),
                 _ => PathSegment::Line { length: rest },
             };
             return PlacedSegment { shape, ..*piece }.end();
@@ -214,14 +212,14 @@ fn open_joints_are_closed_and_count_as_deviation_along_and_across() {
     let records = [
         PlacedSegment::line([0.0, 0.0], [5.0, 0.0]),
         PlacedSegment::line([5.04, 0.0], [10.0, 0.0]),
-        PlacedSegment { start: [10.03, 0.03], heading: 0.0, shape: PathSegment::Arc { radius: 4.0, sweep: 1.5 } },
-        PlacedSegment { start: [14.0, 3.73], heading: 1.5, shape: PathSegment::Arc { radius: 2.0, sweep: -1.0 } },
+        PlacedSegment { start: [10.03, 0.03], heading: 0.0, shape: PathSegment::arc(4.0, 1.5) },
+        PlacedSegment { start: [14.0, 3.73], heading: 1.5, shape: PathSegment::arc(2.0, -1.0) },
         PlacedSegment::line([15.01, 5.37], [18.0, 6.9]),
     ];
     let written = records.map(|PlacedSegment { start: [x, y], heading, shape }| {
         let length = shape.length();
         let shape = match shape {
-            PathSegment::Arc { radius, sweep } => format!("<arc curvature=\"{}\"/>", sweep.signum() / radius),
+            PathSegment::Arc { radius, sweep, .. } => format!("<arc curvature=\"{}\"/>", sweep.signum() / radius),
             _ => "<line/>".to_owned(),
         };
         format!("<geometry x=\"{x}\" y=\"{y}\" hdg=\"{heading}\" length=\"{length}\">{shape}</geometry>")

@@ -47,7 +47,7 @@ fn a_curve_is_the_cubic_of_its_control_points() {
         // The middle of each arc is near the curve.
         let half = match piece.shape {
             PathSegment::Line { length } => PathSegment::Line { length: length / 2.0 },
-            PathSegment::Arc { radius, sweep } => PathSegment::Arc { radius, sweep: sweep / 2.0 },
+            PathSegment::Arc { radius, sweep, .. } => PathSegment::arc(radius, sweep / 2.0),
             _ => panic!("{piece:?}"),
         };
         let middle = pcr_formats::scenario::PlacedSegment { shape: half, ..*piece }.end();

@@ -136,7 +136,7 @@ fn samples(edge: &LayoutEdge) -> Vec<(f64, Point)> {
             let u = length * f64::from(k) / 60.0;
             let ([x, y], (sin, cos)) = (piece.start, piece.heading.sin_cos());
             let (along, across) = match piece.shape {
-                PathSegment::Arc { radius, sweep } => {
+                PathSegment::Arc { radius, sweep, .. } => {
                     let angle = u / radius;
                     (radius * angle.sin(), (radius * (1.0 - angle.cos())).copysign(sweep))
                 }

@@ -47,7 +47,7 @@ fn on(edge: &LayoutEdge, length: f64) -> Pose {
         let u = rest.clamp(0.0, piece.shape.length());
         let ([x, y], (sin, cos)) = (piece.start, piece.heading.sin_cos());
         let (along, across, turned) = match piece.shape {
-            PathSegment::Arc { radius, sweep } => {
+            PathSegment::Arc { radius, sweep, .. } => {
                 let angle = u / radius;
                 (radius * angle.sin(), (radius * (1.0 - angle.cos())).copysign(sweep), angle.copysign(sweep))
             }

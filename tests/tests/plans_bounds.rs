@@ -29,7 +29,7 @@ fn a_wait_in_the_file_is_not_in_the_bound_of_speeds() {
 fn agent(id: u64, dice: &mut Dice) -> Agent {
     let segment = |dice: &mut Dice| match dice.below(2) {
         0 => PathSegment::Line { length: dice.range(0.2, 2.0) },
-        _ => PathSegment::Arc { radius: dice.range(0.2, 1.0), sweep: dice.range(-2.5, 2.5) },
+        _ => PathSegment::arc(dice.range(0.2, 1.0), dice.range(-2.5, 2.5)),
     };
     let path: Vec<PathSegment> = (0..1 + dice.below(4)).map(|_| segment(dice)).collect();
     let start = [dice.range(0.0, 6.0), dice.range(0.0, 6.0), dice.range(-3.0, 3.0)];

@@ -62,12 +62,12 @@ pub(super) fn path(curve: &[PlacedSegment], scale: f64, flipped: bool, at: impl 
         }
         match piece.shape {
             PathSegment::Arc { radius, .. } if radius < POINT => data.line_to(at(piece.end())),
-            PathSegment::Arc { radius, sweep } => {
+            PathSegment::Arc { radius, sweep, .. } => {
                 // Below half a turn two points and a radius leave no doubt which arc is meant.
                 let parts = (sweep.abs() / (0.75 * PI)).ceil().max(1.0) as usize;
                 for part in 1..=parts {
                     let sweep = sweep * part as f64 / parts as f64;
-                    let end = PlacedSegment { shape: PathSegment::Arc { radius, sweep }, ..*piece }.end();
+                    let end = PlacedSegment { shape: PathSegment::arc(radius, sweep), ..*piece }.end();
                     data.arc_to(radius * scale, (sweep > 0.0) != flipped, at(end));
                 }
             }
@@ -103,9 +103,9 @@ pub(super) fn bounds(layout: &Layout, level: Option<usize>, radius: f64) -> [Int
         // Arcs by points of which none is farther than an eighth of a turn from the next.
         (0..=8).map(|k| match piece.shape {
             PathSegment::Line { .. } if k < 8 => piece.start,
-            PathSegment::Arc { radius, sweep } => {
+            PathSegment::Arc { radius, sweep, .. } => {
                 let sweep = sweep * f64::from(k) / 8.0;
-                PlacedSegment { shape: PathSegment::Arc { radius, sweep }, ..*piece }.end()
+                PlacedSegment { shape: PathSegment::arc(radius, sweep), ..*piece }.end()
             }
             _ => piece.end(),
         })

@@ -49,11 +49,11 @@ pub(crate) fn around_swept(shapes: &[SweptShape], distance: f64) -> Vec<[f64; 2]
 
 /// Points whose convex hull contains a piece.
 fn corners(piece: &PlacedSegment) -> Vec<[f64; 2]> {
-    let PathSegment::Arc { radius, sweep } = piece.shape else { return vec![piece.start, piece.end()] };
+    let PathSegment::Arc { radius, sweep, .. } = piece.shape else { return vec![piece.start, piece.end()] };
     let parts = (sweep.abs() / TURN).ceil().max(1.0);
     let mut corners = vec![piece.start];
     for k in 0..parts as usize {
-        let to = |share: f64| PlacedSegment { shape: PathSegment::Arc { radius, sweep: sweep * share }, ..*piece };
+        let to = |share: f64| PlacedSegment { shape: PathSegment::arc(radius, sweep * share), ..*piece };
         let begin = to(k as f64 / parts);
         // An arc lies in the triangle of its ends and the point in which its tangents meet.
         let tangent = radius * (sweep.abs() / parts / 2.0).tan();
@@ -151,8 +151,7 @@ mod tests {
 
     #[test]
     fn the_polygon_contains_all_discs() {
-        let arc =
-            PlacedSegment { start: [1.0, 2.0], heading: 0.3, shape: PathSegment::Arc { radius: 2.0, sweep: -1.9 } };
+        let arc = PlacedSegment { start: [1.0, 2.0], heading: 0.3, shape: PathSegment::arc(2.0, -1.9) };
         for curve in [
             vec![PlacedSegment::line([0.0, 0.0], [3.0, 1.0])],
             vec![arc],

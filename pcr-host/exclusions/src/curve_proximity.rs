@@ -177,7 +177,7 @@ fn seen(piece: &PlacedSegment, point: [f64; 2]) -> PlacedSegment {
 fn about(start: [f64; 2], centre: [f64; 2], sweep: f64) -> PlacedSegment {
     let away = [start[0] - centre[0], start[1] - centre[1]];
     let heading = away[1].atan2(away[0]) + FRAC_PI_2.copysign(sweep);
-    PlacedSegment { start, heading, shape: PathSegment::Arc { radius: away[0].hypot(away[1]), sweep } }
+    PlacedSegment { start, heading, shape: PathSegment::arc(away[0].hypot(away[1]), sweep) }
 }
 
 /// Lengths of a piece at which its distance from the line of a side, beside the side, or from a corner is `far`.
@@ -264,14 +264,14 @@ fn on_circle(piece: &PlacedSegment, [x, y]: [f64; 2], far: f64) -> Vec<f64> {
 
 /// Centre of an arc, or start of a line.
 fn centre(piece: &PlacedSegment) -> [f64; 2] {
-    let PathSegment::Arc { radius, sweep } = piece.shape else { return piece.start };
+    let PathSegment::Arc { radius, sweep, .. } = piece.shape else { return piece.start };
     let to = piece.heading + FRAC_PI_2.copysign(sweep);
     [piece.start[0] + radius * to.cos(), piece.start[1] + radius * to.sin()]
 }
 
 /// Lengths of an arc at these directions from its centre.
 fn on_arc(piece: &PlacedSegment, directions: [f64; 2]) -> Vec<f64> {
-    let PathSegment::Arc { radius, sweep } = piece.shape else { return Vec::new() };
+    let PathSegment::Arc { radius, sweep, .. } = piece.shape else { return Vec::new() };
     let first = piece.heading - FRAC_PI_2.copysign(sweep);
     let mut lengths = Vec::new();
     for direction in directions {
@@ -309,7 +309,7 @@ mod tests {
             let (radius, sweep) = (random.uniform(0.2, 4.0), random.uniform(-7.0, 7.0));
             let line =
                 PlacedSegment { start: at, heading, shape: PathSegment::Line { length: random.uniform(0.0, 6.0) } };
-            let arc = PlacedSegment { start: line.end(), heading, shape: PathSegment::Arc { radius, sweep } };
+            let arc = PlacedSegment { start: line.end(), heading, shape: PathSegment::arc(radius, sweep) };
             let curve = [line, arc];
             for reach in [-0.4, -1e-3, 0.0, 0.05, 0.7] {
                 let ranges = lengths_near_polygon(&curve, &polygon, reach);

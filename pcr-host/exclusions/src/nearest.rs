@@ -98,7 +98,7 @@ impl SupportCurve {
     fn of(piece: &PlacedSegment) -> Self {
         let (sin, cos) = piece.heading.sin_cos();
         match piece.shape {
-            PathSegment::Arc { radius, sweep } => Self::Circle(centre(piece, radius, sweep), radius),
+            PathSegment::Arc { radius, sweep, .. } => Self::Circle(centre(piece, radius, sweep), radius),
             _ => Self::Line(piece.start, [cos, sin]),
         }
     }
@@ -158,7 +158,7 @@ fn length_near(piece: &PlacedSegment, at: [f64; 2]) -> f64 {
             let (sin, cos) = piece.heading.sin_cos();
             ((at[0] - piece.start[0]) * cos + (at[1] - piece.start[1]) * sin).clamp(0.0, length)
         }
-        PathSegment::Arc { radius, sweep } => {
+        PathSegment::Arc { radius, sweep, .. } => {
             let centre = centre(piece, radius, sweep);
             let angle = |[x, y]: [f64; 2]| (y - centre[1]).atan2(x - centre[0]);
             let turned = ((angle(at) - angle(piece.start)) * sweep.signum()).rem_euclid(TAU);
@@ -185,8 +185,7 @@ mod tests {
     #[test]
     fn the_nearest_points_are_those_of_samples() {
         let line = PlacedSegment::line([0.0, 0.0], [4.0, 1.0]);
-        let arc =
-            PlacedSegment { start: [3.0, 2.0], heading: 0.5, shape: PathSegment::Arc { radius: 1.5, sweep: -2.5 } };
+        let arc = PlacedSegment { start: [3.0, 2.0], heading: 0.5, shape: PathSegment::arc(1.5, -2.5) };
         for other in [arc, PlacedSegment::line([1.0, 3.0], [2.0, 1.0]), PlacedSegment::line([2.0, -1.0], [2.0, 2.0])] {
             let found = nearest(&[line], &[other]).unwrap();
             let mut least = f64::INFINITY;
@@ -210,7 +209,7 @@ mod tests {
         let arc = |at: [f64; 2], heading: f64, radius: f64, sweep: f64| PlacedSegment {
             start: at,
             heading,
-            shape: PathSegment::Arc { radius, sweep },
+            shape: PathSegment::arc(radius, sweep),
         };
         let mut random = SplitMix64(1);
         let mut any = || random.unit();
@@ -245,8 +244,7 @@ mod tests {
 
     #[test]
     fn a_stretch_is_the_part_between_two_lengths() {
-        let arc =
-            PlacedSegment { start: [2.0, 0.0], heading: 0.0, shape: PathSegment::Arc { radius: 1.0, sweep: 2.0 } };
+        let arc = PlacedSegment { start: [2.0, 0.0], heading: 0.0, shape: PathSegment::arc(1.0, 2.0) };
         let curve = [PlacedSegment::line([0.0, 0.0], [2.0, 0.0]), arc];
         let part = stretch(&curve, [1.5, 3.0]);
         assert_eq!(part.len(), 2);

@@ -74,7 +74,7 @@ pub use motion_spec::{MotionPiece, MotionSpec};
 pub(crate) use path_decode::MOST_SEGMENTS;
 pub use placed_segment::{KINK, PlacedSegment};
 pub use round_trip::speed_after;
-use std::f64::consts::TAU;
+use std::f64::consts::{PI, TAU};
 
 #[cfg(test)]
 mod tests;
@@ -130,6 +130,8 @@ pub enum PathSegment {
         radius: f64,
         /// \[rad\], left positive.
         sweep: f64,
+        /// Whether the vehicle keeps its heading, the one at its start, although the direction of travel turns.
+        steady: bool,
     },
     /// A turn in place, before and after which the vehicle is at rest. It has no length.
     Turn {
@@ -152,7 +154,7 @@ pub enum PathSegment {
 }
 
 /// The angle from the direction of travel to the heading in reverse gear \[rad\].
-pub const REVERSE: f64 = -std::f64::consts::PI;
+pub const REVERSE: f64 = -PI;
 
 impl Scenario {
     /// A scenario without warnings.
@@ -169,11 +171,28 @@ impl Scenario {
 }
 
 impl PathSegment {
+    /// An arc of this radius \[m\] and sweep \[rad\], left positive, on which the vehicle turns with the direction of travel.
+    pub const fn arc(radius: f64, sweep: f64) -> Self {
+        Self::Arc { radius, sweep, steady: false }
+    }
+
+    /// The angle from the direction of travel to the heading behind this segment, if it is `before` at its start \[rad\].
+    pub fn facing_after(&self, before: f64) -> f64 {
+        match *self {
+            Self::Facing { after, .. } => after,
+            Self::Arc { sweep, steady: true, .. } => {
+                let after = before - sweep;
+                if after.abs() <= PI { after } else { after - TAU * (after / TAU).round() }
+            }
+            _ => before,
+        }
+    }
+
     /// Length \[m\].
     pub fn length(&self) -> f64 {
         match *self {
             Self::Line { length } => length,
-            Self::Arc { radius, sweep } => radius * sweep.abs(),
+            Self::Arc { radius, sweep, .. } => radius * sweep.abs(),
             Self::Turn { .. } | Self::Kink { .. } | Self::Facing { .. } => 0.0,
         }
     }
@@ -190,7 +209,7 @@ impl PathSegment {
         }
     }
 
-    /// The angle by which it turns the vehicle, left positive \[rad\].
+    /// The angle by which it turns the direction of travel, left positive \[rad\].
     pub fn sweep(&self) -> f64 {
         match *self {
             Self::Arc { sweep, .. } | Self::Turn { sweep } | Self::Kink { sweep } => sweep,

@@ -314,10 +314,12 @@ fn place_path<S: HostScalar>(agent: &Agent, levers: Option<&[f64]>) -> Result<Pl
     let (mut sources, mut turns) = (Vec::with_capacity(count), Vec::new());
     // Angle from the direction of travel to the heading of the body, from its first change on, and how many there were.
     let (mut facing, mut changes) = (None, 0);
+    // That angle \[rad\] behind a steady arc, on which it changes: by what the arc turns in the format.
+    let mut held = None;
     for (source, segment) in agent.path.iter().enumerate() {
         if let PathSegment::Facing { before, after } = *segment {
             // By what the angles differ in the format, so that the body keeps its heading.
-            let [was, is] = [angle::<S>("facing", before)?, angle::<S>("facing", after)?];
+            let [was, is] = [angle::<S>("facing", held.take().unwrap_or(before))?, angle::<S>("facing", after)?];
             let by = angle::<S>("facing", S::radians(was) - S::radians(is))?;
             let last = segments.last_mut().unwrap_or(&mut origin);
             *last = last.turned(by).map_err(derived::<S>)?;
@@ -353,15 +355,24 @@ fn place_path<S: HostScalar>(agent: &Agent, levers: Option<&[f64]>) -> Result<Pl
             (shape, Some(lever)) => (Curve::Pivot { lever: radius(lever)?, turn: side }, lever * shape.sweep().abs()),
             (_, None) => (Curve::Line, segment.length()),
         };
-        let length = number("length", length / whole).map_err(at)?;
+        let length = number::<S>("length", length / whole).map_err(at)?;
+        let steady = matches!(segment, PathSegment::Arc { steady: true, .. });
+        if let (true, Curve::Arc { radius, .. }) = (steady, curve) {
+            let turned = (whole * length.to_f64() / radius.to_f64()).copysign(segment.sweep());
+            let before = held.or_else(|| facing.map(S::radians)).unwrap_or(0.0);
+            held = Some(PathSegment::Arc { radius: 1.0, sweep: turned, steady }.facing_after(before));
+        }
         for _ in 0..whole as usize {
             let last = segments.last().unwrap_or(&origin);
             let next = match curve {
                 Curve::Line => last.then_line(length),
                 Curve::Pivot { lever, turn } => last.then_pivot(lever, turn, length),
+                Curve::Arc { radius, turn } if steady => last.then_steady_arc(radius, turn, length),
                 Curve::Arc { radius, turn } => last.then_arc(radius, turn, length),
             };
-            let next = next.and_then(|next| match facing {
+            // Behind a steady arc the body goes on as it is.
+            let stated = if steady { facing.take() } else { facing };
+            let next = next.and_then(|next| match stated {
                 Some(facing) => next.facing(facing),
                 None => Ok(next),
             });

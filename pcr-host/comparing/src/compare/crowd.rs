@@ -56,7 +56,7 @@ fn path(
 fn half(segment: PathSegment) -> PathSegment {
     match segment {
         PathSegment::Line { length } => PathSegment::Line { length: 0.5 * length },
-        PathSegment::Arc { radius, sweep } => PathSegment::Arc { radius, sweep: 0.5 * sweep },
+        PathSegment::Arc { radius, sweep, .. } => PathSegment::arc(radius, 0.5 * sweep),
         _ => segment,
     }
 }

@@ -105,7 +105,7 @@ impl DiscTrack {
         for segment in &agent.path {
             let (length, curvature) = match *segment {
                 PathSegment::Line { length } => (length, 0.0),
-                PathSegment::Arc { radius, sweep } => (radius * sweep.abs(), sweep.signum() / radius),
+                PathSegment::Arc { radius, sweep, .. } => (radius * sweep.abs(), sweep.signum() / radius),
                 PathSegment::Turn { sweep } | PathSegment::Kink { sweep } => {
                     heading += sweep;
                     continue;

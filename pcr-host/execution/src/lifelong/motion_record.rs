@@ -396,7 +396,7 @@ fn path(shapes: &[PlacedSegment], at: [f64; 2], length: f64) -> raw::RawPath {
         let turn = placed.heading - heading;
         let long = placed.shape.length();
         let radius = match placed.shape {
-            PathSegment::Arc { radius, sweep } => Some(radius.copysign(sweep)),
+            PathSegment::Arc { radius, sweep, .. } => Some(radius.copysign(sweep)),
             _ => None,
         };
         let turns = if turn == 0.0 { Vec::new() } else { vec![RawAngle::Radians(turn)] };

@@ -200,7 +200,7 @@ fn path(
         }
         last = match placed.shape {
             PathSegment::Line { length } => last.then_line(length)?,
-            PathSegment::Arc { radius, sweep } => last.then_arc(radius, side(sweep), radius * sweep.abs())?,
+            PathSegment::Arc { radius, sweep, .. } => last.then_arc(radius, side(sweep), radius * sweep.abs())?,
             // A route is of lines and arcs of edges, and turns where they meet.
             PathSegment::Turn { .. } | PathSegment::Kink { .. } => {
                 return Err(InvalidInput::Disconnected("path with a turn of its own"));

@@ -193,7 +193,7 @@ fn add(path: &mut DrivenPath, site: &RouteGraph, atom: usize, mut left: f64) {
             Curve::Line => path.line(point(0.0), point(keep), keep),
             Curve::Arc { radius, turn } => {
                 path.face(point(0.0), heading);
-                path.push(PathSegment::Arc { radius, sweep: signed(keep / radius, turn) }, keep, false);
+                path.push(PathSegment::arc(radius, signed(keep / radius, turn)), keep, false);
             }
             Curve::Pivot { lever, turn } => {
                 path.begin(point(0.0), heading);

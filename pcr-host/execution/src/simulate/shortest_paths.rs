@@ -52,7 +52,7 @@ pub(super) fn taut(
     for pair in chain.windows(2) {
         let end = pair[0].to;
         let sweep = end.side * turn(&pair[0], &pair[1]);
-        path.push(PathSegment::Arc { radius: all.get(end.place)?.radius, sweep });
+        path.push(PathSegment::arc(all.get(end.place)?.radius, sweep));
         path.push(PathSegment::Line { length: pair[1].length });
     }
     Some((Pose { position: Point::new(start[0], start[1]), heading: Radians(first.direction) }, path))

@@ -32,15 +32,29 @@ pub struct SpeedLimitedPath {
 struct SegmentLimit {
     /// Speed limit; infinite if there is none \[m/s\].
     top: f64,
-    /// Angle from the direction of travel to the heading \[rad\].
-    facing: f64,
+    /// Angles from the direction of travel to the heading at both ends \[rad\]. Only on a steady arc they differ.
+    facing: [f64; 2],
+    /// An arc on which the robot keeps its heading.
+    steady: bool,
     /// A turn in place for which the robot stands.
     stands: bool,
 }
 
 impl SegmentLimit {
+    /// That of the rest of a segment, of this length \[m\].
+    fn before_end(self, segment: &Segment<f64>, left: f64) -> Self {
+        match segment.curve() {
+            Curve::Arc { radius, turn } if self.steady && left < segment.length() => {
+                let turned = left / radius;
+                let facing = self.facing[1] + if turn == TurnSide::Left { turned } else { -turned };
+                Self { facing: [facing, self.facing[1]], ..self }
+            }
+            _ => self,
+        }
+    }
+
     /// In forward gear, without a speed limit.
-    const NONE: Self = Self { top: f64::INFINITY, facing: 0.0, stands: false };
+    const NONE: Self = Self { top: f64::INFINITY, facing: [0.0; 2], steady: false, stands: false };
 }
 
 /// A place where a robot stands: a turn in place, or a change of facing.
@@ -92,15 +106,23 @@ impl SpeedLimitedPath {
                     facing = after;
                     continue;
                 }
-                PathSegment::Arc { radius, sweep } => (Curve::Arc { radius, turn: side(sweep) }, segment.length(), top),
+                PathSegment::Arc { radius, sweep, .. } => {
+                    (Curve::Arc { radius, turn: side(sweep) }, segment.length(), top)
+                }
                 PathSegment::Turn { sweep } | PathSegment::Kink { sweep } => {
                     let lever = if stands { STANDING_LEVER } else { LEVER };
                     (Curve::Pivot { lever, turn: side(sweep) }, lever * sweep.abs(), top * lever)
                 }
             };
             let stands = stands && segment.takes_turning();
+            let part = match *segment {
+                PathSegment::Arc { radius, sweep, steady } => PathSegment::Arc { radius, sweep: sweep / whole, steady },
+                other => other,
+            };
+            let steady = matches!(part, PathSegment::Arc { steady: true, .. });
             for _ in 0..whole as usize {
-                course.push(curve, length / whole, SegmentLimit { top, facing, stands })?;
+                let before = std::mem::replace(&mut facing, part.facing_after(facing));
+                course.push(curve, length / whole, SegmentLimit { top, facing: [before, facing], steady, stands })?;
             }
         }
         course.path()?;
@@ -144,15 +166,17 @@ impl SpeedLimitedPath {
             return Ok(());
         }
         // The body keeps its heading.
-        if limit.facing != before.facing {
-            *last = last.turned(Radians(before.facing - limit.facing))?;
+        let [before, after] = [before.facing[1], limit.facing[0]];
+        if after != before {
+            *last = last.turned(Radians(before - after))?;
         }
         let next = match curve {
             Curve::Line => last.then_line(length)?,
+            Curve::Arc { radius, turn } if limit.steady => last.then_steady_arc(radius, turn, length)?,
             Curve::Arc { radius, turn } => last.then_arc(radius, turn, length)?,
             Curve::Pivot { lever, turn } => last.then_pivot(lever, turn, length)?,
         };
-        let next = next.facing(Radians(limit.facing))?;
+        let next = next.facing(Radians(after))?;
         if last.length() == 0.0 {
             self.segments.clear();
             self.limits.clear();
@@ -186,7 +210,11 @@ impl SpeedLimitedPath {
         let along = self.path().map_or(0.0, |path| path.pose_at(length).heading.0);
         // That of the segment that begins there, as of a path.
         let place = self.segments.partition_point(|segment| segment.from() <= length).saturating_sub(1);
-        along + self.limits.get(place).map_or(0.0, |limit| limit.facing)
+        match self.limits.get(place).zip(self.segments.get(place)) {
+            Some((limit, segment)) if limit.steady => segment.heading_at(0.0).0 + limit.facing[0],
+            Some((limit, _)) => along + limit.facing[0],
+            None => along,
+        }
     }
 
     /// How near to its end \[m\] a robot has arrived, of these two: where it drives, and where it turns in place.
@@ -201,7 +229,9 @@ impl SpeedLimitedPath {
     /// for how much it turns at such a rate at most in a time \[s\]: how far its heading may be off a uniform turn in that time \[rad\].
     pub(super) fn uneven_turn(&self, speed: f64, time: f64) -> f64 {
         let (mut left, mut right) = (0.0_f64, 0.0_f64);
-        for (segment, SegmentLimit { top, .. }) in self.segments.iter().zip(&self.limits) {
+        for (segment, SegmentLimit { top, .. }) in
+            self.segments.iter().zip(&self.limits).filter(|(_, limit)| !limit.steady)
+        {
             let (Curve::Arc { radius: lever, turn } | Curve::Pivot { lever, turn }) = segment.curve() else { continue };
             let rate = (top.min(speed) / lever * time).min(segment.length() / lever);
             let most = if turn == TurnSide::Left { &mut left } else { &mut right };
@@ -221,7 +251,8 @@ impl SpeedLimitedPath {
         for (segment, &limit) in self.segments.iter().zip(&self.limits) {
             let left = segment.from() + segment.length() - length;
             if left > 0.0 {
-                rest.push(segment.curve(), left.min(segment.length()), limit)?;
+                let left = left.min(segment.length());
+                rest.push(segment.curve(), left, limit.before_end(segment, left))?;
             }
         }
         Ok(rest)
@@ -298,7 +329,7 @@ impl SpeedLimitedPath {
     /// Whether the angle to the heading changes at the end of a segment.
     fn changes_facing_after(&self, place: usize) -> bool {
         let [before, after] = [place, place + 1].map(|place| self.limits.get(place));
-        before.zip(after).is_some_and(|(before, after)| before.facing != after.facing)
+        before.zip(after).is_some_and(|(before, after)| before.facing[1] != after.facing[0])
     }
 
     /// The least radius of an arc that is driven \[m\]; infinite without any.
@@ -402,7 +433,7 @@ mod tests {
     #[test]
     fn the_rest_of_a_drive_goes_on_as_it_does() {
         let pose = Pose { position: Point::new(1.0, 2.0), heading: Radians(0.3) };
-        let arc = PathSegment::Arc { radius: 0.5, sweep: -1.0 };
+        let arc = PathSegment::arc(0.5, -1.0);
         let course = SpeedLimitedPath::new(pose, &[PathSegment::Line { length: 1.0 }, arc]).expect("a course");
         // To 0.5 m/s, on, to rest, a wait, and again.
         let pieces = [(1.0, 0.5), (0.5, 0.0), (1.0, -0.5), (2.0, 0.0), (1.0, 0.5), (0.5, 0.0), (1.0, -0.5)];
@@ -425,7 +456,7 @@ mod tests {
     #[test]
     fn the_rest_of_a_course_is_where_the_course_is() {
         let pose = Pose { position: Point::new(1.0, 2.0), heading: Radians(0.3) };
-        let arc = PathSegment::Arc { radius: 0.5, sweep: -1.0 };
+        let arc = PathSegment::arc(0.5, -1.0);
         let course = SpeedLimitedPath::new(pose, &[PathSegment::Line { length: 1.0 }, arc, arc]).expect("a course");
         let facings = |before: f64, after: f64| {
             let [change, back] =

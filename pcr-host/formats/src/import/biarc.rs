@@ -131,7 +131,7 @@ fn point_at(begin: [f64; 2], pieces: &[PlacedSegment], length: f64) -> [f64; 2] 
         let own = piece.shape.length();
         if rest < own {
             let shape = match piece.shape {
-                PathSegment::Arc { radius, sweep } => PathSegment::Arc { radius, sweep: sweep * rest.max(0.0) / own },
+                PathSegment::Arc { radius, sweep, .. } => PathSegment::arc(radius, sweep * rest.max(0.0) / own),
                 _ => PathSegment::Line { length: rest.max(0.0) },
             };
             return PlacedSegment { shape, ..*piece }.end();
@@ -314,7 +314,7 @@ fn arc(at: [f64; 2], heading: f64, to: [f64; 2]) -> Option<PlacedSegment> {
     (sweep.abs() <= SWEEP && radius.is_finite()).then_some(PlacedSegment {
         start: at,
         heading,
-        shape: PathSegment::Arc { radius, sweep },
+        shape: PathSegment::arc(radius, sweep),
     })
 }
 
@@ -339,7 +339,7 @@ fn parameter(curve: &RationalBezier, second: &PlacedSegment) -> f64 {
 pub(super) fn distance(curve: &RationalBezier, piece: &PlacedSegment) -> f64 {
     let curvature = match piece.shape {
         PathSegment::Arc { sweep, .. } if sweep.abs() > SWEEP => return f64::INFINITY,
-        PathSegment::Arc { radius, sweep } => 1.0_f64.copysign(sweep) / radius,
+        PathSegment::Arc { radius, sweep, .. } => 1.0_f64.copysign(sweep) / radius,
         _ => 0.0,
     };
     let start = framed(curve, piece.start, piece.heading);
@@ -386,7 +386,7 @@ mod tests {
                     let across = (y - piece.start[1]) * cos - (x - piece.start[0]) * sin;
                     (0.0..=length).contains(&along).then_some(across.abs())
                 }
-                PathSegment::Arc { radius, sweep } => {
+                PathSegment::Arc { radius, sweep, .. } => {
                     let side = radius.copysign(sweep);
                     let from = [x - piece.start[0] + side * sin, y - piece.start[1] - side * cos];
                     let angle = (from[1].atan2(from[0]) - piece.heading) * sweep.signum() + FRAC_PI_2;

@@ -91,7 +91,7 @@ fn arcs(
             straight += curvature.abs() * length;
             PathSegment::Line { length }
         } else {
-            PathSegment::Arc { radius: curvature.abs().recip(), sweep: curvature * length }
+            PathSegment::arc(curvature.abs().recip(), curvature * length)
         };
         let piece = PlacedSegment { start: at, heading, shape };
         at = piece.end();

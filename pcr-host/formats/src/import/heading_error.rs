@@ -33,7 +33,7 @@ pub(super) fn between(curve: &RationalBezier, piece: &PlacedSegment) -> f64 {
 fn halved(curve: &RationalBezier, piece: &PlacedSegment, halvings: u32) -> f64 {
     let points = framed(curve, piece.start, piece.heading);
     let curvature = match piece.shape {
-        PathSegment::Arc { radius, sweep } => 1.0_f64.copysign(sweep) / radius,
+        PathSegment::Arc { radius, sweep, .. } => 1.0_f64.copysign(sweep) / radius,
         _ => 0.0,
     };
     let hull = by_polygon(&points, curvature);
@@ -100,7 +100,7 @@ mod tests {
         let arc = |radius: f64, sweep: f64| PlacedSegment {
             start: [0.0; 2],
             heading: 0.1,
-            shape: PathSegment::Arc { radius, sweep },
+            shape: PathSegment::arc(radius, sweep),
         };
         let line = PlacedSegment { start: [0.0; 2], heading: 0.1, shape: PathSegment::Line { length: 1.0 } };
         let curves: [&[[f64; 3]]; 4] = [
@@ -115,7 +115,7 @@ mod tests {
             for piece in [line, arc(2.0, 0.5), arc(20.0, 0.05), arc(2.0, -0.5)] {
                 let bound = between(&curve, &piece);
                 let curvature = match piece.shape {
-                    PathSegment::Arc { radius, sweep } => 1.0_f64.copysign(sweep) / radius,
+                    PathSegment::Arc { radius, sweep, .. } => 1.0_f64.copysign(sweep) / radius,
                     _ => 0.0,
                 };
                 let mut most = 0.0_f64;

@@ -216,7 +216,7 @@ impl GeometryRecord<'_> {
                 let curvature = field("curvature")?;
                 let sweep = length * curvature;
                 Ok(match curvature.abs().recip() {
-                    radius if radius < STRAIGHT => BiarcFit::exact(placed(PathSegment::Arc { radius, sweep })),
+                    radius if radius < STRAIGHT => BiarcFit::exact(placed(PathSegment::arc(radius, sweep))),
                     _ => BiarcFit {
                         // How far the arc leaves its tangent.
                         deviation: 0.5 * length * sweep.abs(),

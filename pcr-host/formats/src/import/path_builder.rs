@@ -102,7 +102,7 @@ impl LimitedPathBuilder {
             PathSegment::Line { .. } => self.line(piece.start, piece.end()),
             // No curve of a file has one.
             PathSegment::Turn { .. } | PathSegment::Kink { .. } | PathSegment::Facing { .. } => {}
-            PathSegment::Arc { radius, sweep } => {
+            PathSegment::Arc { radius, sweep, .. } => {
                 if radius * sweep == 0.0 {
                     return;
                 }
@@ -196,7 +196,7 @@ mod tests {
     fn a_joint_that_is_off_by_a_millimetre_is_closed_and_told() {
         let mut tracer = LimitedPathBuilder::default();
         tracer.follow(&PlacedSegment::line([0.0, 0.0], [5.0, 0.0]));
-        let arc = PathSegment::Arc { radius: 2.0, sweep: -FRAC_PI_2 };
+        let arc = PathSegment::arc(2.0, -FRAC_PI_2);
         tracer.follow(&PlacedSegment { start: [5.001, 0.0], heading: 1e-4, shape: arc });
         let trace = tracer.finish([0.0, 0.0]);
         assert!((trace.deviation - 1e-3).abs() < 1e-8);

@@ -322,7 +322,7 @@ pub(super) fn corner_arc(start: [f64; 2], corner: [f64; 2], end: [f64; 2], radiu
     let heading = (-back[1]).atan2(-back[0]);
     // The way on lies to the left where the vector back lies to its left.
     let sweep = (std::f64::consts::PI - angle).copysign(-cross);
-    Some(PlacedSegment { start: at, heading, shape: PathSegment::Arc { radius, sweep } })
+    Some(PlacedSegment { start: at, heading, shape: PathSegment::arc(radius, sweep) })
 }
 
 /// The routes that the options ask for as a scenario, an agent a route.
@@ -452,7 +452,7 @@ mod tests {
     fn a_corner_is_rounded_as_nav2_does_it() {
         let arc = corner_arc([-3.0, 0.0], [0.0, 0.0], [0.0, 2.0], 1.0).unwrap();
         assert!((arc.start[0] + 1.0).abs() < 1e-15 && arc.start[1] == 0.0 && arc.heading == 0.0);
-        assert!(matches!(arc.shape, PathSegment::Arc { radius: 1.0, sweep } if (sweep - FRAC_PI_2).abs() < 1e-15));
+        assert!(matches!(arc.shape, PathSegment::Arc { radius: 1.0, sweep, .. } if (sweep - FRAC_PI_2).abs() < 1e-15));
         let right = corner_arc([-3.0, 0.0], [0.0, 0.0], [-1.0, -3.0_f64.sqrt()], 0.5).unwrap();
         // Tangent length 0.5 / tan 30°, and 120° to turn.
         assert!((right.start[0] + 0.5 * 3.0_f64.sqrt()).abs() < 1e-12);
@@ -498,7 +498,7 @@ mod tests {
         };
         let edge =
             |id: u64, ends: [usize; 2], curve: Vec<PlacedSegment>| LayoutEdge::new(ElementId::Number(id), ends, curve);
-        let arc = PathSegment::Arc { radius: 1.0, sweep: FRAC_PI_2 };
+        let arc = PathSegment::arc(1.0, FRAC_PI_2);
         let curve = vec![PlacedSegment { start: [0.0, 0.0], heading: 0.0, shape: arc }];
         let nodes = [([0.0, 0.0], 0), ([1.0, 1.0], 0), ([1.0, 3.0], 0), ([4.0, 3.0], level), ([5.0, 3.0], level)];
         Layout {

@@ -117,9 +117,7 @@ mod tests {
 
     #[test]
     fn the_smaller_of_two_limits_counts() {
-        let bend = |speed, rotation| {
-            limited(&stretch(PathSegment::Arc { radius: 1.5, sweep: 1.0 }, speed, rotation), &VEHICLE).speed
-        };
+        let bend = |speed, rotation| limited(&stretch(PathSegment::arc(1.5, 1.0), speed, rotation), &VEHICLE).speed;
         assert_eq!([bend(None, None), bend(None, Some(0.5)), bend(None, Some(3.0))], [1.5, 0.75, 1.5]);
         assert_eq!([bend(Some(0.25), Some(3.0)), bend(Some(9.0), Some(0.5))], [0.25, 0.75]);
         let speed = |rotation| limited(&turn(rotation), &VEHICLE).speed;

@@ -219,7 +219,7 @@ pub(super) fn heading_beside(piece: &PlacedSegment, point: [f64; 2], within: f64
     let along = match piece.shape {
         PathSegment::Line { .. } => ahead,
         PathSegment::Turn { .. } | PathSegment::Kink { .. } | PathSegment::Facing { .. } => 0.0,
-        PathSegment::Arc { radius, sweep } => {
+        PathSegment::Arc { radius, sweep, .. } => {
             // The centre is to the left of an arc that turns left. Half of what is missing to a full turn is before its begin.
             let angle = ahead.atan2(radius - left * sweep.signum());
             let spare = 0.5 * (TAU - sweep.abs()).max(0.0);
@@ -228,7 +228,7 @@ pub(super) fn heading_beside(piece: &PlacedSegment, point: [f64; 2], within: f64
     };
     let along = along.clamp(0.0, whole);
     let shape = match piece.shape {
-        PathSegment::Arc { radius, sweep } => PathSegment::Arc { radius, sweep: (along / radius).copysign(sweep) },
+        PathSegment::Arc { radius, sweep, .. } => PathSegment::arc(radius, (along / radius).copysign(sweep)),
         _ => PathSegment::Line { length: along },
     };
     let part = PlacedSegment { shape, ..*piece };
@@ -249,7 +249,7 @@ mod tests {
         }
         // From (2, 0) around the origin, to the left and to the right.
         for side in [1.0, -1.0] {
-            let shape = PathSegment::Arc { radius: 2.0, sweep: side * 3.0 * FRAC_PI_2 };
+            let shape = PathSegment::arc(2.0, side * 3.0 * FRAC_PI_2);
             let arc = PlacedSegment { start: [2.0, 0.0], heading: side * FRAC_PI_2, shape };
             for turn in [0.0, 0.3, FRAC_PI_2, 3.0, 3.0 * FRAC_PI_2] {
                 let at = [2.02 * f64::cos(turn), side * 2.02 * f64::sin(turn)];

@@ -128,10 +128,7 @@ impl Agent {
         let ([x, y], heading) = (reached.end(), reached.heading_at_end());
         let mut path: Vec<PathSegment> = self.path.iter().take(last + 1).skip(first).copied().collect();
         // It begins with the heading of the vehicle, from which the way leads at the angle that it had before.
-        let facing = before.clone().fold(0.0, |facing, shape| match *shape {
-            PathSegment::Facing { after, .. } => after,
-            _ => facing,
-        });
+        let facing = before.clone().fold(0.0, |facing, shape| shape.facing_after(facing));
         if let Some(PathSegment::Facing { before, .. }) = path.first_mut() {
             *before = 0.0;
         } else if facing != 0.0 {

@@ -3,7 +3,7 @@
 use super::agent_name::AgentName;
 use super::angles::{AngleField, Doubts, RADIANS, UNIT};
 use super::facing;
-use super::file_version::{FACINGS, KNOWN_VERSIONS, TURNS, VERSION, VersionFaults};
+use super::file_version::{KNOWN_VERSIONS, STEADY, TURNS, VERSION, VersionFaults};
 use super::json_fields::{
     DecodeLocation, LIMIT, NumberRange, ObjectFields, ScenarioError, brief, figure, parse_integer,
 };
@@ -115,7 +115,7 @@ impl Scenario {
         let version = match fields.get("version").map(|version| (version, &version.data)) {
             None => VERSION,
             Some((given, JsonData::Number(version))) => match parse_integer(version) {
-                Some(version @ VERSION..=FACINGS) => version,
+                Some(version @ VERSION..=STEADY) => version,
                 _ => return Err(fields.unexpected("version", given, KNOWN_VERSIONS)),
             },
             Some((given, _)) => return Err(fields.unexpected("version", given, KNOWN_VERSIONS)),

@@ -3,7 +3,7 @@
 use super::angles::{RADIANS, UNIT};
 use super::decode::FORMAT;
 use super::facing::file_segments;
-use super::file_version::{FACINGS, GEARS, TURNS, VERSION};
+use super::file_version::{FACINGS, GEARS, STEADY, TURNS, VERSION};
 use super::{Agent, LoadOutline, MotionPiece, MotionSpec, PathSegment, REVERSE, Scenario};
 use crate::footprint::Footprint;
 use serde_json::Value;
@@ -39,7 +39,9 @@ impl Agent {
     fn version(&self) -> u64 {
         let has_kinks = self.path.iter().any(|segment| matches!(segment, PathSegment::Kink { .. }));
         let has_angles = file_segments(&self.path).any(|(_, facing)| facing != 0.0 && facing != REVERSE);
-        if has_angles {
+        if self.has_steady_arcs() {
+            STEADY
+        } else if has_angles {
             FACINGS
         } else if has_kinks || self.motion.turns_in_place() {
             TURNS
@@ -90,7 +92,12 @@ impl Display for AsJson<&Agent> {
                 }
                 PathSegment::Turn { sweep } => write!(f, "{comma} {{ \"kind\": \"turn\", \"sweep\": {sweep:?} }}")?,
                 PathSegment::Kink { sweep } => write!(f, "{comma} {{ \"kind\": \"kink\", \"sweep\": {sweep:?} }}")?,
-                PathSegment::Arc { radius, sweep } => {
+                PathSegment::Arc { radius, sweep, steady } => {
+                    // Behind another segment the angle that is not given goes on.
+                    let gear = match steady {
+                        false => gear,
+                        true => format!(", \"facing\": {facing:?}, \"steady\": true"),
+                    };
                     write!(f, "{comma} {{ \"kind\": \"arc\", \"radius\": {radius:?}, \"sweep\": {sweep:?}{gear} }}")?;
                 }
             }
@@ -142,7 +149,7 @@ mod tests {
             margin: 0.1,
             t_start: -1e9,
             start: [1e-300, -7.0, 0.1 + 0.2],
-            path: vec![PathSegment::Line { length: 0.5 }, PathSegment::Arc { radius: 1e-8, sweep: -1e-8 }],
+            path: vec![PathSegment::Line { length: 0.5 }, PathSegment::arc(1e-8, -1e-8)],
             motion: MotionSpec::RestToRest { v_max: 1e10, a_max: 0.1 },
         };
         let length = agent.length();

@@ -7,14 +7,14 @@ pub(super) fn changes(segment: &PathSegment) -> bool {
     matches!(segment, PathSegment::Facing { .. })
 }
 
-/// The segments of a path as files have them, each with the angle from the direction of travel to the heading \[rad\].
+/// The segments of a path as files have them, each with the angle from the direction of travel to the heading at their
+/// start \[rad\].
 pub(super) fn file_segments(path: &[PathSegment]) -> impl Iterator<Item = (&PathSegment, f64)> {
     let mut facing = 0.0;
     path.iter().filter_map(move |segment| {
-        if let PathSegment::Facing { after, .. } = segment {
-            facing = *after;
-        }
-        (!changes(segment)).then_some((segment, facing))
+        let before = facing;
+        facing = segment.facing_after(facing);
+        (!changes(segment)).then_some((segment, before))
     })
 }
 
@@ -22,6 +22,11 @@ impl Agent {
     /// Whether the vehicle changes its gear, or travels at another angle to its heading, if only at its start.
     pub fn changes_facing(&self) -> bool {
         self.path.iter().any(changes)
+    }
+
+    /// Whether the vehicle keeps its heading on an arc.
+    pub fn has_steady_arcs(&self) -> bool {
+        self.path.iter().any(|segment| matches!(segment, PathSegment::Arc { steady: true, .. }))
     }
 
     /// The number in a file (from 0) of a segment of the path.

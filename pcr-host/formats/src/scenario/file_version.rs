@@ -12,8 +12,11 @@ pub(super) const TURNS: u64 = 3;
 /// The version of files in which segments have other angles between heading and way than those of gears.
 pub(super) const FACINGS: u64 = 4;
 
+/// The version of files in which vehicles keep their heading on arcs.
+pub(super) const STEADY: u64 = 5;
+
 /// The versions that are read, for messages.
-pub(super) const KNOWN_VERSIONS: &str = "1 to 4, all that this pcr knows,";
+pub(super) const KNOWN_VERSIONS: &str = "1 to 5, all that this pcr knows,";
 
 /// For each key that not all versions of files have, the error of its first use. A file may name its version after its agents, so that the
 /// errors are kept until the version is known.
@@ -25,6 +28,8 @@ pub(super) struct VersionFaults {
     pub(super) turn: Option<ScenarioError>,
     /// Of other angles than those of gears.
     pub(super) facing: Option<ScenarioError>,
+    /// Of arcs on which the heading is kept.
+    pub(super) steady: Option<ScenarioError>,
     /// Of turns with a length.
     pub(super) long_turn: Option<ScenarioError>,
 }
@@ -35,8 +40,9 @@ impl VersionFaults {
         let gear = self.gear.as_ref().filter(|_| version < GEARS);
         let turn = self.turn.as_ref().filter(|_| version < TURNS);
         let facing = self.facing.as_ref().filter(|_| version < FACINGS);
+        let steady = self.steady.as_ref().filter(|_| version < STEADY);
         let long_turn = self.long_turn.as_ref().filter(|_| version >= TURNS);
-        gear.or(turn).or(facing).or(long_turn).map_or(Ok(()), |fault| Err(fault.clone()))
+        gear.or(turn).or(facing).or(steady).or(long_turn).map_or(Ok(()), |fault| Err(fault.clone()))
     }
 
     /// Notes that something is there from version 3 on.

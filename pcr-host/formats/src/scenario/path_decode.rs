@@ -1,7 +1,7 @@
 //! Decodes the path of an agent.
 
 use super::angles::{AngleField, Doubts};
-use super::file_version::{FACINGS, GEARS, VersionFaults};
+use super::file_version::{FACINGS, GEARS, STEADY, VersionFaults};
 use super::json_fields::{DecodeLocation, LIMIT, NumberRange, ObjectFields, ScenarioError, brief, figure};
 use super::{PathSegment, REVERSE, old_turns};
 use crate::json::{JsonData, JsonNode, Position};
@@ -29,15 +29,19 @@ pub(super) fn path(
                 let problem = format!("it is there from version {version} on; give \"version\": {version}");
                 place.error(own.position, field, problem)
             };
-            if own.is_angle {
+            if own.is_steady {
+                versions.steady.get_or_insert_with(|| since(STEADY, "steady"));
+            } else if own.is_angle {
                 versions.facing.get_or_insert_with(|| since(FACINGS, "facing"));
             } else {
                 versions.gear.get_or_insert_with(|| since(GEARS, "gear"));
             }
         }
         let segment = match segment {
-            PathSegment::Arc { radius: old_turns::RADIUS, sweep } if stops => PathSegment::Turn { sweep },
-            PathSegment::Arc { radius: old_turns::RADIUS, sweep } => PathSegment::Kink { sweep },
+            PathSegment::Arc { radius: old_turns::RADIUS, sweep, steady: false } if stops => {
+                PathSegment::Turn { sweep }
+            }
+            PathSegment::Arc { radius: old_turns::RADIUS, sweep, steady: false } => PathSegment::Kink { sweep },
             other => other,
         };
         if kind(json) == Some("kink") {
@@ -45,11 +49,11 @@ pub(super) fn path(
         }
         // A turn in place goes on as it was before.
         let is_turn = matches!(segment, PathSegment::Turn { .. } | PathSegment::Kink { .. });
-        let after = if is_turn { before } else { own.map_or(0.0, |own| own.angle) };
+        let after = if is_turn { before } else { own.map_or(0.0, |own| own.angle.unwrap_or(before)) };
         if after != before {
             path.push(PathSegment::Facing { before, after });
-            before = after;
         }
+        before = segment.facing_after(after);
         path.push(segment);
     }
     let length: f64 = path.iter().map(PathSegment::length).sum();
@@ -76,10 +80,12 @@ pub(super) fn kind<'j>(segment: &'j JsonNode<'_>) -> Option<&'j str> {
 /// The gear of a segment in a file, or the angle from its direction of travel to the heading.
 struct GivenFacing {
     position: Position,
-    /// \[rad\]
-    angle: f64,
+    /// \[rad\]; none of a steady segment that goes on as the segment before ends.
+    angle: Option<f64>,
     /// Whether the file has `facing` or `facing_deg`, and not `gear`.
     is_angle: bool,
+    /// Whether the file has `steady`.
+    is_steady: bool,
 }
 
 impl GivenFacing {
@@ -95,7 +101,7 @@ impl GivenFacing {
             (None, Some(angle)) => {
                 let position = angle.position;
                 let angle = doubts.angle(fields, AngleField::Facing)?;
-                return Ok(Some(Self { position, angle, is_angle: true }));
+                return Ok(Some(Self { position, angle: Some(angle), is_angle: true, is_steady: false }));
             }
             (Some(gear), None) => match &gear.data {
                 JsonData::Text(name) if name == "reverse" => (gear, REVERSE),
@@ -103,7 +109,22 @@ impl GivenFacing {
                 _ => return Err(fields.unexpected("gear", gear, "\"forward\" or \"reverse\"")),
             },
         };
-        Ok(Some(Self { position: gear.position, angle, is_angle: false }))
+        Ok(Some(Self { position: gear.position, angle: Some(angle), is_angle: false, is_steady: false }))
+    }
+
+    /// That of a segment that may be steady, and whether it is: then the angle is that at its start, and the one with which the segment before
+    /// ends if none is given.
+    fn decode_steady(fields: &ObjectFields<'_>, doubts: &mut Doubts) -> Result<(Option<Self>, bool), ScenarioError> {
+        let own = Self::decode(fields, doubts)?;
+        let Some(given) = fields.get("steady") else { return Ok((own, false)) };
+        let JsonData::Bool(steady) = given.data else {
+            return Err(fields.unexpected("steady", given, "true or false"));
+        };
+        if !steady {
+            return Ok((own, false));
+        }
+        let own = own.unwrap_or(Self { position: given.position, angle: None, is_angle: false, is_steady: true });
+        Ok((Some(Self { is_steady: true, ..own }), true))
     }
 }
 
@@ -116,16 +137,18 @@ impl PathSegment {
     ) -> Result<(Self, Option<GivenFacing>), ScenarioError> {
         match kind(json) {
             Some("line") => {
-                let fields = place.fields(json, &["kind", "length", "gear", "facing", "facing_deg"])?;
+                let fields = place.fields(json, &["kind", "length", "gear", "facing", "facing_deg", "steady"])?;
                 let length = fields.number("length", NumberRange::NotNegative)?;
-                Ok((Self::Line { length }, GivenFacing::decode(&fields, doubts)?))
+                let (own, _) = GivenFacing::decode_steady(&fields, doubts)?;
+                Ok((Self::Line { length }, own))
             }
             Some("arc") => {
-                let known = ["kind", "radius", "sweep", "sweep_deg", "gear", "facing", "facing_deg"];
+                let known = ["kind", "radius", "sweep", "sweep_deg", "gear", "facing", "facing_deg", "steady"];
                 let fields = place.fields(json, &known)?;
                 let radius = fields.number("radius", NumberRange::Positive)?;
                 let sweep = doubts.angle(&fields, AngleField::Sweep)?;
-                Ok((Self::Arc { radius, sweep }, GivenFacing::decode(&fields, doubts)?))
+                let (own, steady) = GivenFacing::decode_steady(&fields, doubts)?;
+                Ok((Self::Arc { radius, sweep, steady }, own))
             }
             Some(of_angle @ ("turn" | "kink")) => {
                 let fields = place.fields(json, &["kind", "sweep", "sweep_deg"])?;
@@ -135,7 +158,7 @@ impl PathSegment {
             _ => {
                 let fields = place.fields(
                     json,
-                    &["kind", "length", "radius", "sweep", "sweep_deg", "gear", "facing", "facing_deg"],
+                    &["kind", "length", "radius", "sweep", "sweep_deg", "gear", "facing", "facing_deg", "steady"],
                 )?;
                 let kind = fields.required("kind")?;
                 Err(fields.error(

@@ -37,7 +37,7 @@ impl PlacedSegment {
         let (chord, direction) = match self.shape {
             PathSegment::Line { length } => (length, self.heading),
             PathSegment::Turn { .. } | PathSegment::Kink { .. } | PathSegment::Facing { .. } => return self.start,
-            PathSegment::Arc { radius, sweep } => {
+            PathSegment::Arc { radius, sweep, .. } => {
                 (2.0 * radius * (sweep.abs() / 2.0).sin(), self.heading + sweep / 2.0)
             }
         };
@@ -55,7 +55,7 @@ impl PlacedSegment {
             let share = if whole > 0.0 { length / whole } else { 0.0 };
             match self.shape {
                 PathSegment::Line { length } => PathSegment::Line { length: length * share },
-                PathSegment::Arc { radius, sweep } => PathSegment::Arc { radius, sweep: sweep * share },
+                PathSegment::Arc { radius, sweep, steady } => PathSegment::Arc { radius, sweep: sweep * share, steady },
                 _ => PathSegment::Line { length: 0.0 },
             }
         };
@@ -76,7 +76,7 @@ impl PlacedSegment {
         let shape = match self.shape {
             PathSegment::Line { .. } => self.shape,
             PathSegment::Facing { before, after } => PathSegment::Facing { before: after, after: before },
-            PathSegment::Arc { radius, sweep } => PathSegment::Arc { radius, sweep: -sweep },
+            PathSegment::Arc { radius, sweep, steady } => PathSegment::Arc { radius, sweep: -sweep, steady },
             PathSegment::Turn { sweep } => PathSegment::Turn { sweep: -sweep },
             PathSegment::Kink { sweep } => PathSegment::Kink { sweep: -sweep },
         };

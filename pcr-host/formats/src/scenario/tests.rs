@@ -212,7 +212,7 @@ fn angles_may_be_in_degrees() {
         let scenario = read("/start/heading", "heading_deg", json!(degrees)).unwrap();
         assert_eq!((scenario.agents[1].start[2], scenario.warnings.len()), (radians, 0), "{degrees}");
         let scenario = read("/path/1/sweep", "sweep_deg", json!(degrees)).unwrap();
-        let arc = PathSegment::Arc { radius: 1.0, sweep: radians };
+        let arc = PathSegment::arc(1.0, radians);
         assert_eq!((scenario.agents[1].path[1], scenario.warnings.len()), (arc, 0), "{degrees}");
         // What is written of it is not doubted either.
         assert_eq!(Scenario::from_json(&scenario.to_json()), Ok(scenario));
@@ -433,7 +433,7 @@ fn a_margin_is_given_to_those_that_have_none() {
 
 #[test]
 fn a_full_turn_may_be_rounded_and_no_more() {
-    let turns = |sweep| PathSegment::Arc { radius: 1.0, sweep }.turns();
+    let turns = |sweep| PathSegment::arc(1.0, sweep).turns();
     assert_eq!([turns(2.0 * PI * (1.0 + 5e-13)), turns(-2.0 * PI), turns(2.0 * PI * (1.0 + 1e-11))], [1.0, 1.0, 2.0]);
     assert_eq!([turns(0.0), turns(4.0 * PI), turns(-13.0)], [1.0, 2.0, 3.0]);
 }

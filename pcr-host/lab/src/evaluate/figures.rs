@@ -61,7 +61,7 @@ fn agent(id: u64, start: [f64; 3], path: Vec<PathSegment>) -> Agent {
 
 fn cases() -> [(&'static str, &'static str, Scenario); 3] {
     let line = |length| PathSegment::Line { length };
-    let arc = |radius, sweep| PathSegment::Arc { radius, sweep };
+    let arc = |radius, sweep| PathSegment::arc(radius, sweep);
     let straight = || agent(1, [-2.0, 0.0, 0.0], vec![line(4.0)]);
     let of = |name: &str, agents: Vec<Agent>| Scenario::new(name, agents);
     [

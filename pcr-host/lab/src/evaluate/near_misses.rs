@@ -114,7 +114,7 @@ const KINDS: usize = 4;
 fn pairs(clearance: f64) -> [Scenario; KINDS] {
     let reach = RADII[0] + RADII[1] + clearance;
     let line = |length| PathSegment::Line { length };
-    let arc = |radius, sweep| PathSegment::Arc { radius, sweep };
+    let arc = |radius, sweep| PathSegment::arc(radius, sweep);
     let of = |name: &str, agents: [Agent; 2]| Scenario::new(name, agents.into());
     let east = |t_start| agent(0, t_start, [-4.0, 0.0, 0.0], line(8.0));
     [

@@ -130,7 +130,7 @@ fn roadmap(count: usize, seed: u64, is_curved: bool) -> ImportedLayout {
         let (length, heading) = ((u - x).hypot(v - y), (v - y).atan2(u - x) - sweep / 2.0);
         let shape = match sweep {
             0.0 => PathSegment::Line { length },
-            _ => PathSegment::Arc { radius: length / (2.0 * (sweep.abs() / 2.0).sin()), sweep },
+            _ => PathSegment::arc(length / (2.0 * (sweep.abs() / 2.0).sin()), sweep),
         };
         let curve = vec![PlacedSegment { start: [x, y], heading, shape }];
         LayoutEdge::new(ElementId::Number(id as u64), ends, curve)

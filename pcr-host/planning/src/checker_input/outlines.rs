@@ -26,47 +26,76 @@ pub(crate) fn is_body<S: HostScalar>(motion: &Motion<'_, S>) -> bool {
 /// The bodies of a fleet, whose paths and times are those of these agents.
 pub fn bodies<S: HostScalar>(fleet: &Fleet<S>, agents: Vec<RawAgent>, motions: &[Motion<'_, S>]) -> Vec<RawBody> {
     let all = agents.into_iter().zip(motions).enumerate();
-    all.map(|(place, (agent, motion))| body(agent, motion, fleet.headings(place).1)).collect()
+    all.map(|(place, (agent, motion))| body(agent, motion, fleet.headings(place))).collect()
 }
 
-fn body<S: HostScalar>(agent: RawAgent, motion: &Motion<'_, S>, turns: &[PathTurn<S>]) -> RawBody {
+fn body<S: HostScalar>(
+    agent: RawAgent,
+    motion: &Motion<'_, S>,
+    (heading, turns): (S::Angle, &[PathTurn<S>]),
+) -> RawBody {
     let outline = motion.outline();
     let corners = outline.corners().iter().map(|corner| [corner.at().x.to_f64(), corner.at().y.to_f64()]);
     let corners: Vec<[f64; 2]> = if is_outline(motion) { corners.collect() } else { vec![[0.0; 2]] };
     // Turns without a length are those that move no point by more than rounding does, and turns of the path where the body keeps its
     // heading, but for what the rounding of three angles of the format leaves.
-    let mut was = 0.0;
-    let turned = turns.iter().map(|turn| {
-        let by = S::radians(turn.by);
-        let off = turn.facing.map_or(by, |facing| by - (was - S::radians(facing)));
-        was = turn.facing.map_or(was, S::radians);
-        (off - TAU * (off / TAU).round()).abs()
-    });
-    let jump = turned.fold(0.0, f64::max) * (1.0 + 1e-9) + JUMP;
+    let (mut was, mut jump, mut ahead) = (0.0, 0.0_f64, S::radians(heading));
     let mut facing = RawAngle::Turns(0.0);
-    let curves = motion.path().segments().iter().map(|segment| segment.curve());
-    let segments = agent.path.segments.into_iter().zip(curves).enumerate().map(|(place, (segment, curve))| {
-        let here = turns.iter().rev().find(|turn| turn.before == place && turn.facing.is_some());
-        facing = here.and_then(|turn| turn.facing).map_or(facing, S::held_angle);
-        RawBodySegment {
-            course: match curve {
+    let mut left = turns.iter().peekable();
+    let mut turn_before = |place: usize, was: &mut f64, ahead: &mut f64| {
+        let mut facing = None;
+        while let Some(turn) = left.next_if(|turn| turn.before <= place) {
+            let by = S::radians(turn.by);
+            let off = turn.facing.map_or(by, |facing| by - (*was - S::radians(facing)));
+            *was = turn.facing.map_or(*was, S::radians);
+            *ahead += by;
+            jump = jump.max((off - TAU * (off / TAU).round()).abs());
+            facing = turn.facing.or(facing);
+        }
+        facing
+    };
+    let mut segments = Vec::with_capacity(agent.path.segments.len());
+    for (place, (segment, part)) in agent.path.segments.into_iter().zip(motion.path().segments()).enumerate() {
+        facing = turn_before(place, &mut was, &mut ahead).map_or(facing, S::held_angle);
+        // In the numbers of the checker, which are those of the format, a heading on the map is a sum of angles; it is known within the jump.
+        let turned = match part.curve() {
+            Curve::Line => 0.0,
+            Curve::Arc { radius: lever, turn } | Curve::Pivot { lever, turn } => {
+                let turned = segment.length / lever.to_f64();
+                if turn == TurnSide::Left { turned } else { -turned }
+            }
+        };
+        let heading = match part.is_steady() {
+            false => RawHeading::Along(facing),
+            true => {
+                let heading = RawHeading::Steady(RawAngle::Radians(ahead + was));
+                was -= turned;
+                facing = RawAngle::Radians(was);
+                heading
+            }
+        };
+        ahead += turned;
+        segments.push(RawBodySegment {
+            course: match part.curve() {
                 Curve::Pivot { lever, turn: TurnSide::Left } => RawCourse::Pivot { lever: lever.to_f64() },
                 Curve::Pivot { lever, turn: TurnSide::Right } => RawCourse::Pivot { lever: -lever.to_f64() },
                 _ => segment.radius.map_or(RawCourse::Line, |radius| RawCourse::Arc { radius }),
             },
             length: segment.length,
             turns: segment.turns,
-            heading: RawHeading::Along(facing),
+            heading,
             from: segment.from,
             to: segment.to,
-        }
-    });
+        });
+    }
+    turn_before(usize::MAX, &mut was, &mut ahead);
+    let jump = jump * (1.0 + 1e-9) + JUMP;
     RawBody {
         id: agent.id,
         outline: RawOutline { corners, radius: outline.radius().to_f64() },
         start: agent.path.start,
         direction: agent.path.heading,
-        segments: segments.collect(),
+        segments,
         rounding: agent.path.rounding,
         jump,
         step: agent.path.step,

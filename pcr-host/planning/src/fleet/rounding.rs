@@ -26,7 +26,7 @@ impl RoundingBounds {
         let Self { distance, length } = of_path::<S>(agent);
         // On an arc corners of an outline go farther than its reference point.
         let curvatures = agent.path.iter().map(|segment| match *segment {
-            PathSegment::Arc { radius, .. } => 1.0 / radius,
+            PathSegment::Arc { radius, steady: false, .. } => 1.0 / radius,
             _ => 0.0,
         });
         let lever = 1.0 + spread(agent) * curvatures.fold(0.0, f64::max);
@@ -90,11 +90,11 @@ fn of_path<S: HostScalar>(agent: &Agent) -> RoundingBounds {
         let kept = representable::<S>(length / turns) * turns;
         next.shape = match segment {
             PathSegment::Line { .. } => PathSegment::Line { length: kept },
-            PathSegment::Arc { radius, sweep } => {
+            PathSegment::Arc { radius, sweep, steady } => {
                 let radius = representable::<S>(radius);
                 let rounded = if radius > 0.0 { (kept / radius).copysign(sweep) } else { 0.0 };
                 bent = (rounded - sweep).abs();
-                PathSegment::Arc { radius, sweep: rounded }
+                PathSegment::Arc { radius, sweep: rounded, steady }
             }
             PathSegment::Turn { sweep } | PathSegment::Kink { sweep } => {
                 PathSegment::Kink { sweep: held_angle::<S>(sweep) }

@@ -156,7 +156,7 @@ impl OrderPath {
             // Of an order there are lines and arcs; these turn the way.
             PathSegment::Turn { sweep } | PathSegment::Kink { sweep } => PathElement::Turn { sweep, lever: None },
             PathSegment::Facing { before, after } => PathElement::Turn { sweep: before - after, lever: None },
-            PathSegment::Arc { radius, sweep } => PathElement::Arc { radius, sweep },
+            PathSegment::Arc { radius, sweep, .. } => PathElement::Arc { radius, sweep },
         });
         (self.at, self.heading) = (placed.end(), placed.heading_at_end() - side);
     }

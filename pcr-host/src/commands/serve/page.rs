@@ -46,7 +46,7 @@ fn draw(fleet: &[RobotDrawing], ego: usize) -> Result<String, String> {
         let turn = |sweep| PathSegment::Kink { sweep };
         let path = robot.course.shapes().iter().flat_map(|shape| match *shape {
             PathElement::Line { length } => vec![PathSegment::Line { length }],
-            PathElement::Arc { radius, sweep } => vec![PathSegment::Arc { radius, sweep }],
+            PathElement::Arc { radius, sweep } => vec![PathSegment::arc(radius, sweep)],
             PathElement::Turn { sweep, .. } => vec![turn(sweep)],
             PathElement::Shift { ahead, left } => {
                 let side = left.atan2(ahead);

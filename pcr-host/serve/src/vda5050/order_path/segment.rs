@@ -49,8 +49,8 @@ impl OrderPathSegment {
         let shape = match self.shape {
             OrderPathShape::Drive(placed, side) => {
                 let shape = match placed.shape {
-                    PathSegment::Arc { radius, sweep } => {
-                        PathSegment::Arc { radius, sweep: (along / radius).copysign(sweep) }
+                    PathSegment::Arc { radius, sweep, .. } => {
+                        PathSegment::arc(radius, (along / radius).copysign(sweep))
                     }
                     _ => PathSegment::Line { length: along },
                 };
@@ -69,7 +69,7 @@ pub(super) fn along(placed: &PlacedSegment, point: [f64; 2]) -> f64 {
     let (ahead, left) = (x * cos + y * sin, y * cos - x * sin);
     match placed.shape {
         PathSegment::Line { length } => ahead.clamp(0.0, length),
-        PathSegment::Arc { radius, sweep } => {
+        PathSegment::Arc { radius, sweep, .. } => {
             // The centre is to the left of an arc that turns left.
             let towards = if sweep < 0.0 { -left } else { left };
             let angle = ahead.atan2(radius - towards).rem_euclid(TAU);
