@@ -16,7 +16,6 @@ pub(crate) use proximity::{ROW, in_box};
 
 use crate::error::{self, InvalidInput, in_range};
 use crate::geometry::{Aabb, Direction, Point, Pose, Vector};
-#[cfg(feature = "outlines")]
 use crate::outline::turned_back;
 use crate::scalar::{Angle, AngleSector, Scalar, Unit};
 

@@ -72,8 +72,8 @@ impl fmt::Display for OutlineProofs {
 #[derive(Clone, Debug)]
 struct Case {
     start: [f64; 3],
-    /// Length, and the radius of an arc, positive to the left.
-    legs: Vec<(f64, Option<f64>)>,
+    /// Length, the radius of an arc, positive to the left, and whether the body keeps its heading on it.
+    legs: Vec<(f64, Option<f64>, bool)>,
     corners: Vec<[f64; 2]>,
     radius: f64,
     set_off: f64,
@@ -84,6 +84,8 @@ struct Case {
 struct Posture {
     at: [f64; 2],
     heading: f64,
+    /// Direction of travel.
+    way: f64,
     turn: f64,
 }
 
@@ -95,7 +97,7 @@ impl Posture {
 
     /// The velocity of a corner, for a speed of 1 along the path.
     fn velocity(&self, corner: [f64; 2]) -> [f64; 2] {
-        let (sin, cos) = self.heading.sin_cos();
+        let (sin, cos) = self.way.sin_cos();
         let [x, y] = self.place(corner);
         [cos - self.turn * (y - self.at[1]), sin + self.turn * (x - self.at[0])]
     }
@@ -103,20 +105,22 @@ impl Posture {
 
 impl Case {
     fn length(&self) -> f64 {
-        self.legs.iter().map(|(length, _)| length).sum()
+        self.legs.iter().map(|(length, ..)| length).sum()
     }
 
     fn posture(&self, mut length: f64) -> Posture {
         let [x, y, heading] = self.start;
-        let mut now = Posture { at: [x, y], heading, turn: 0.0 };
-        for &(leg, bend) in &self.legs {
+        let mut now = Posture { at: [x, y], heading, way: heading, turn: 0.0 };
+        for &(leg, bend, steady) in &self.legs {
             let part = length.clamp(0.0, leg);
-            let (from, turn) = (now.heading, bend.map_or(0.0, f64::recip));
+            let (from, turn) = (now.way, bend.map_or(0.0, f64::recip));
             let to = from + turn * part;
             let way = bend.map_or([part * from.cos(), part * from.sin()], |radius| {
                 [radius * (to.sin() - from.sin()), radius * (from.cos() - to.cos())]
             });
-            now = Posture { at: [now.at[0] + way[0], now.at[1] + way[1]], heading: to, turn };
+            let turn = if steady { 0.0 } else { turn };
+            let heading = now.heading + turn * part;
+            now = Posture { at: [now.at[0] + way[0], now.at[1] + way[1]], heading, way: to, turn };
             length -= leg;
             if length <= 0.0 {
                 break;
@@ -132,11 +136,11 @@ impl Case {
         let legs: Vec<_> = (0..1 + dice.below(3))
             .map(|_| {
                 if dice.chance(0.4) {
-                    return (q(dice.range(0.5, 2.0)), None);
+                    return (q(dice.range(0.5, 2.0)), None, false);
                 }
                 let radius = if dice.chance(0.2) { 0.0625 } else { q(dice.range(0.3, 2.0)).max(0.25) };
                 let sweep = if grid { [0.5, 1.0, 2.0][dice.below(3)] * PI } else { dice.range(0.2, 6.0) };
-                (radius * sweep, Some(if dice.chance(0.5) { radius } else { -radius }))
+                (radius * sweep, Some(if dice.chance(0.5) { radius } else { -radius }), dice.chance(0.3))
             })
             .collect();
         let (a, b) = (q(dice.range(0.2, 0.8)).max(0.25), q(dice.range(0.1, 0.5)).max(0.25));
@@ -153,7 +157,7 @@ impl Case {
             _ => vec![[0.0, 0.0]],
         };
         // Where the reference point lies: in the middle, outside, or so that the centre of the first arc is on a corner or on an edge.
-        let bend = legs.iter().find_map(|(_, bend)| *bend);
+        let bend = legs.iter().find_map(|(_, bend, _)| *bend);
         let middle = |k: usize, corners: &[[f64; 2]]| {
             let [one, two] = [corners[k], corners[(k + 1) % corners.len()]];
             [0.5 * (one[0] + two[0]), 0.5 * (one[1] + two[1])]
@@ -242,13 +246,14 @@ impl<S: HostScalar> Held<S> {
         let [x, y, heading] = case.start;
         let heading = S::angle(heading).ok_or(InvalidInput::OutOfRange("heading"))?;
         let mut path = Path::starting_at(Pose { position: Point::new(S::from_f64(x), S::from_f64(y)), heading })?;
-        for &(length, bend) in &case.legs {
+        for &(length, bend, steady) in &case.legs {
             let length = S::from_f64(length);
             path = match bend {
                 None => path.line(length)?,
                 Some(radius) => {
                     let turn = if radius > 0.0 { TurnSide::Left } else { TurnSide::Right };
-                    path.arc(S::from_f64(radius.abs()), turn, length)?
+                    let radius = S::from_f64(radius.abs());
+                    if steady { path.steady_arc(radius, turn, length) } else { path.arc(radius, turn, length) }?
                 }
             };
         }
@@ -268,13 +273,25 @@ impl<S: HostScalar> Held<S> {
     /// The body as plain numbers for the checker.
     fn raw(&self, id: u64, motion: &Motion<'_, S>) -> RawBody {
         let agent = checker_input::agent(id, motion, self.heading, &[]);
-        let segments = agent.path.segments.iter().map(|segment| RawBodySegment {
-            course: segment.radius.map_or(RawCourse::Line, |radius| RawCourse::Arc { radius }),
-            length: segment.length,
-            turns: vec![],
-            heading: RawHeading::Along(RawAngle::Turns(0.0)),
-            from: segment.from,
-            to: segment.to,
+        // Both turn on arcs, the body not on all of them.
+        let (mut way, mut heading) = (S::radians(self.heading), S::radians(self.heading));
+        let parts = motion.path().segments().iter();
+        let segments = agent.path.segments.iter().zip(parts).map(|(segment, part)| {
+            let turned = segment.radius.map_or(0.0, |radius| segment.length / radius);
+            let raw = RawBodySegment {
+                course: segment.radius.map_or(RawCourse::Line, |radius| RawCourse::Arc { radius }),
+                length: segment.length,
+                turns: vec![],
+                heading: match part.is_steady() {
+                    true => RawHeading::Steady(RawAngle::Radians(heading)),
+                    false => RawHeading::Along(RawAngle::Radians(heading - way)),
+                },
+                from: segment.from,
+                to: segment.to,
+            };
+            way += turned;
+            heading += if part.is_steady() { 0.0 } else { turned };
+            raw
         });
         RawBody {
             id,

@@ -38,7 +38,7 @@ fn arc(radius: f64, sweep: f64) -> Value {
 }
 
 fn read(agents: &[Value]) -> Scenario {
-    Scenario::from_json(&json!({ "name": "outlines", "version": 4, "agents": agents }).to_string()).unwrap()
+    Scenario::from_json(&json!({ "name": "outlines", "version": 5, "agents": agents }).to_string()).unwrap()
 }
 
 /// A segment in reverse gear.
@@ -109,13 +109,13 @@ fn after(polygon: &[Point], agent: &Agent, ways: &[f64]) -> Polygon {
                 x += own * (heading - facing).cos();
                 y += own * (heading - facing).sin();
             }
-            PathSegment::Arc { radius, sweep, .. } => {
+            PathSegment::Arc { radius, sweep, steady } => {
                 // The centre is beside the way.
                 let (side, turned) = (radius.copysign(sweep), (own / radius).copysign(sweep));
                 let way = heading - facing;
                 x += side * ((way + turned).sin() - way.sin());
                 y -= side * ((way + turned).cos() - way.cos());
-                heading += turned;
+                if steady { facing -= turned } else { heading += turned }
             }
             PathSegment::Turn { sweep } => heading += own.copysign(sweep),
             PathSegment::Kink { .. } => panic!("{segment:?}"),
@@ -365,6 +365,59 @@ fn vehicles_that_travel_sideways() {
         assert!(counts.iter().all(|count| *count > 100), "{counts:?}");
     }
     proved_in_formats(&read(&agents), 5);
+}
+
+/// A segment on which the heading is kept.
+fn steady(mut segment: Value) -> Value {
+    segment["steady"] = json!(true);
+    segment
+}
+
+/// Platforms with steered wheels only, of which one turns with an arc at the end.
+fn platforms() -> [Value; 2] {
+    let keeps = json!([
+        line(1.0),
+        steady(arc(1.0, 1.3)),
+        steady(line(0.6)),
+        steady(arc(0.5, -2.2)),
+        facing(line(0.5), 0.4),
+        steady(arc(0.4, 7.0))
+    ]);
+    let turns = json!([steady(facing(arc(1.2, -2.0), FRAC_PI_2)), steady(line(0.6)), facing(arc(0.8, 1.5), -0.3)]);
+    [agent(1, &TRUCK, [-1.5, -0.3, 0.1], &keeps), agent(2, &SQUARE, [0.6, -0.4, 1.3 + FRAC_PI_2], &turns)]
+}
+
+#[test]
+fn vehicles_that_keep_their_heading_on_arcs() {
+    let agents = platforms();
+    for counts in [
+        compare(&agents, [&TRUCK, &SQUARE]),
+        compare_in::<f32>(&agents, [&TRUCK, &SQUARE], 0.01),
+        compare_in::<Q20>(&agents, [&TRUCK, &SQUARE], 0.02),
+        compare_in::<Q16>(&agents, [&TRUCK, &SQUARE], 0.02),
+        compare_in::<Q12>(&agents, [&TRUCK, &SQUARE], 0.1),
+    ] {
+        assert!(counts.iter().all(|count| *count > 100), "{counts:?}");
+    }
+    let scenario = read(&agents);
+    assert_eq!(Scenario::from_json(&scenario.to_json()), Ok(scenario.clone()));
+    proved_in_formats(&scenario, 6);
+    // On arcs with the body they would be elsewhere.
+    let mut turning = agents.clone();
+    turning[0]["path"] = json!([
+        line(1.0),
+        arc(1.0, 1.3),
+        line(0.6),
+        arc(0.5, -2.2),
+        facing(line(0.5), 0.4),
+        facing(arc(0.4, 7.0), 0.4)
+    ]);
+    let lengths = |scenario: &Scenario| {
+        let options = RegionOptions { agent: Some(1), slices: None, certificate: false };
+        let answer = RegionsReport::compute::<f64>(scenario, options).unwrap();
+        answer.regions.iter().map(|region| region.l).collect::<Vec<_>>()
+    };
+    assert_ne!(lengths(&scenario), lengths(&read(&turning)));
 }
 
 /// On every line and arc an outline at an angle to its way covers what an outline that is turned by the angle covers along it.

@@ -9,7 +9,7 @@ use super::contour::{RegionOutline, is_thin};
 use super::map::{RegionLabels, THIN, spans};
 use super::region_scene::{DrawnRegion, RegionScene};
 use super::template::PageTemplate;
-use pcr_core::{Aabb, Crossing, Curve, Interval, Motion, TurnSide};
+use pcr_core::{Aabb, Crossing, Curve, Interval, Motion, Segment, TurnSide};
 use pcr_formats::scenario::Agent;
 use serde_json::{Value, json};
 use std::fmt::Write as _;
@@ -99,6 +99,10 @@ fn agent(scene: &RegionScene<'_>, place: usize, motion: &Motion<'_, f64>) -> Val
     });
     if !facings.is_empty() {
         agent["facings"] = json!(facings);
+    }
+    let steady: Vec<bool> = motion.path().segments().iter().map(Segment::is_steady).collect();
+    if steady.contains(&true) {
+        agent["steady"] = json!(steady);
     }
     agent
 }

@@ -78,10 +78,10 @@ impl RegionScene<'_> {
         }
     }
 
-    /// The angle from the direction of travel to the heading of an agent \[rad\], on each segment of its motion; empty if the two are
+    /// The angle from the direction of travel to the heading of an agent \[rad\], at the start of each segment of its motion; empty if the two are
     /// always the same.
     pub(super) fn facings(&self, place: usize) -> Vec<f64> {
-        let agent = self.scenario.agents.get(place).filter(|agent| agent.changes_facing());
+        let agent = self.scenario.agents.get(place).filter(|agent| agent.changes_facing() || agent.has_steady_arcs());
         let (Some(agent), Some(motion)) = (agent, self.motions.get(place)) else { return Vec::new() };
         // The direction of travel turns where the angle changes, and nowhere else without a length: an outline stands and turns.
         let (mut direction, mut facing) = (agent.start[2], 0.0);
@@ -91,7 +91,11 @@ impl RegionScene<'_> {
                 facing -= turned;
             }
             direction = segment.heading_at(segment.length()).0;
-            facing
+            let at_start = facing;
+            if segment.is_steady() {
+                facing -= direction - segment.heading_at(0.0).0;
+            }
+            at_start
         });
         segments.collect()
     }
@@ -100,9 +104,12 @@ impl RegionScene<'_> {
     pub(super) fn pose_at(&self, place: usize, length: f64) -> Option<Pose<f64>> {
         let motion = self.motions.get(place)?;
         let Pose { position, heading } = motion.path().pose_at(length);
-        let after = motion.path().segments().partition_point(|segment| segment.from() <= length).saturating_sub(1);
+        let segments = motion.path().segments();
+        let after = segments.partition_point(|segment| segment.from() <= length).saturating_sub(1);
         let facing = self.facings(place).get(after).copied().unwrap_or_default();
-        Some(Pose { position, heading: Radians(heading.0 + facing) })
+        let steady = segments.get(after).filter(|segment| segment.is_steady());
+        let direction = steady.map_or(heading, |segment| segment.heading_at(0.0));
+        Some(Pose { position, heading: Radians(direction.0 + facing) })
     }
 
     /// Whether an agent is more than one convex outline: maps show the regions of convex hulls.

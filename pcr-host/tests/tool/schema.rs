@@ -209,6 +209,8 @@ fn schema_and_tool_refuse_the_same_scenarios() {
         ("/version", json!(3)),
         ("/version", json!(4)),
         ("/version", json!(5)),
+        ("/version", json!(6)),
+        ("/agents/0/path", json!([{ "kind": "line", "length": 1, "steady": true }])),
         ("/agents/0/path", json!([{ "kind": "line", "length": 1, "facing": 1 }])),
         ("/agents/0/path", json!([{ "kind": "line", "length": 1, "gear": "reverse" }])),
         ("/agents/0/path", json!([{ "kind": "arc", "radius": 1, "sweep": 1, "gear": "forward" }])),
@@ -306,6 +308,23 @@ fn schema_and_tool_refuse_the_same_scenarios() {
         scenario["agents"][0]["path"] = json!([segment]);
         let run = run_with(&["regions", "-q"], scenario.to_string().as_bytes());
         assert_eq!([run.status == 0, faults(&schema, &scenario).is_empty()], [is_one; 2], "{keys}: {}", run.err);
+    }
+    for (version, keys, is_one) in [
+        (5, json!({ "steady": true }), true),
+        (5, json!({ "steady": false, "facing_deg": -90 }), true),
+        (5, json!({ "steady": true, "gear": "reverse" }), true),
+        (5, json!({ "steady": 1 }), false),
+        (4, json!({ "steady": true }), false),
+        (4, json!({ "steady": false, "facing": 1 }), false),
+    ] {
+        for mut segment in [json!({ "kind": "line", "length": 1 }), json!({ "kind": "arc", "radius": 1, "sweep": 1 })] {
+            let mut scenario = crossing();
+            scenario["version"] = json!(version);
+            segment.as_object_mut().unwrap().extend(keys.as_object().unwrap().clone());
+            scenario["agents"][0]["path"] = json!([segment]);
+            let run = run_with(&["regions", "-q"], scenario.to_string().as_bytes());
+            assert_eq!([run.status == 0, faults(&schema, &scenario).is_empty()], [is_one; 2], "{keys}: {}", run.err);
+        }
     }
     let line = json!({ "kind": "line", "length": 1 });
     let kink = json!([line, { "kind": "kink", "sweep": 0.5 }, line]);

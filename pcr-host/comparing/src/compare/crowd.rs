@@ -56,7 +56,7 @@ fn path(
 fn half(segment: PathSegment) -> PathSegment {
     match segment {
         PathSegment::Line { length } => PathSegment::Line { length: 0.5 * length },
-        PathSegment::Arc { radius, sweep, .. } => PathSegment::arc(radius, 0.5 * sweep),
+        PathSegment::Arc { radius, sweep, steady } => PathSegment::Arc { radius, sweep: 0.5 * sweep, steady },
         _ => segment,
     }
 }
@@ -66,7 +66,7 @@ fn segment(random: &mut SplitMix64) -> PathSegment {
         PathSegment::Line { length: random.uniform(1.0, 2.0) }
     } else {
         let (radius, sweep) = (random.uniform(0.5, 1.5), random.uniform(0.8, FRAC_PI_2));
-        PathSegment::Arc { radius, sweep: if random.below(2) == 0 { sweep } else { -sweep } }
+        PathSegment::arc(radius, if random.below(2) == 0 { sweep } else { -sweep })
     }
 }
 

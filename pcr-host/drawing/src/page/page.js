@@ -43,7 +43,8 @@ function poseAt(agent, length) {
   if (bend === 0) return [x + u * Math.cos(heading), y + u * Math.sin(heading), heading + facing];
   const half = u / bend / 2;
   const chord = 2 * bend * Math.sin(half);
-  return [x + chord * Math.cos(heading + half), y + chord * Math.sin(heading + half), heading + 2 * half + facing];
+  const ahead = agent.steady?.[low] ? heading : heading + 2 * half;
+  return [x + chord * Math.cos(heading + half), y + chord * Math.sin(heading + half), ahead + facing];
 }
 
 // Least distance of a point from the segment between two points.

@@ -121,8 +121,9 @@ impl SpeedLimitedPath {
             };
             let steady = matches!(part, PathSegment::Arc { steady: true, .. });
             for _ in 0..whole as usize {
-                let before = std::mem::replace(&mut facing, part.facing_after(facing));
-                course.push(curve, length / whole, SegmentLimit { top, facing: [before, facing], steady, stands })?;
+                let ends = [facing, part.facing_after(facing)];
+                course.push(curve, length / whole, SegmentLimit { top, facing: ends, steady, stands })?;
+                facing = ends[1];
             }
         }
         course.path()?;

@@ -66,7 +66,7 @@ mod tests {
     use super::*;
     use crate::scenario::Scenario;
     use serde_json::{Value, json};
-    use std::f64::consts::FRAC_PI_2;
+    use std::f64::consts::{FRAC_PI_2, PI};
 
     fn file(version: u64, path: &Value, more: &[(&str, Value)]) -> String {
         let mut agent = json!({ "id": 7, "radius": 0.2, "v_max": 1.0, "a_max": 1.0, "path": path,
@@ -166,6 +166,53 @@ mod tests {
     }
 
     #[test]
+    fn a_heading_that_is_kept_on_arcs_goes_on_behind_them() {
+        let steady = |mut segment: Value| {
+            segment["steady"] = json!(true);
+            segment
+        };
+        let arc = |sweep: f64| json!({ "kind": "arc", "radius": 1.0, "sweep": sweep });
+        let (mut across, mut plain) = (steady(arc(0.7)), arc(0.2));
+        (across["facing"], plain["steady"]) = (json!(0.3), json!(false));
+        let path =
+            json!([steady(arc(0.5)), steady(arc(5.0)), steady(line(1.0, None)), across, plain, steady(arc(0.0))]);
+        let scenario = Scenario::from_json(&file(5, &path, &[])).unwrap();
+        let agent = &scenario.agents[0];
+        assert_eq!(agent.structure(), "AASCACAA");
+        let facings: Vec<f64> = file_segments(&agent.path).map(|(_, facing)| facing).collect();
+        for (facing, expected) in facings.iter().zip([0.0, -0.5, 2.0 * PI - 5.5, 0.3, 0.0, 0.0]) {
+            assert!((facing - expected).abs() < 1e-14, "{facings:?}");
+        }
+        assert_eq!(Scenario::from_json(&scenario.to_json()), Ok(scenario.clone()));
+        assert!(scenario.to_json().contains("\"version\": 5"));
+        // Where a part of the path begins, the vehicle has the heading that it has there.
+        for first in 0..agent.path.len() {
+            let part = agent.stretch(first, agent.path.len() - 1).agent;
+            let own = file_segments(&part.path).map(|(_, facing)| facing).next().unwrap();
+            assert!((own - facings[agent.file_segment(first)]).abs() < 1e-14, "{first}: {own} {facings:?}");
+        }
+    }
+
+    #[test]
+    fn a_heading_that_is_kept_needs_its_version() {
+        for steady in [json!(true), json!(false)] {
+            for segment in
+                [json!({ "kind": "line", "length": 1.0 }), json!({ "kind": "arc", "radius": 1.0, "sweep": 1.0 })]
+            {
+                let mut segment = segment;
+                segment["steady"] = steady.clone();
+                let refused = Scenario::from_json(&file(4, &json!([segment]), &[])).unwrap_err().to_string();
+                assert!(refused.contains("segment 1, steady: it is there from version 5 on"), "{refused}");
+            }
+        }
+        let odd = json!({ "kind": "line", "length": 1.0, "steady": 1 });
+        let refused = Scenario::from_json(&file(5, &json!([odd]), &[])).unwrap_err().to_string();
+        assert!(refused.contains("steady: 1 where true or false is expected"), "{refused}");
+        let turn = json!({ "kind": "turn", "sweep": 1.0, "steady": true });
+        assert!(Scenario::from_json(&file(5, &json!([turn]), &[])).unwrap_err().to_string().contains("steady"));
+    }
+
+    #[test]
     fn an_angle_beside_a_gear_is_refused() {
         let refused = |version: u64, segment: Value| {
             Scenario::from_json(&file(version, &json!([segment]), &[])).unwrap_err().to_string()
@@ -200,7 +247,7 @@ mod tests {
             let refused = refused(&file.to_string());
             assert!(refused.contains("agent 7, segment 1, gear: it is there from version 2 on"), "{refused}");
         }
-        assert!(refused(&file(5, &back, &[])).contains("1 to 4, all that this pcr knows,"));
+        assert!(refused(&file(6, &back, &[])).contains("1 to 5, all that this pcr knows,"));
         let neutral = refused(&file(2, &json!([line(1.0, Some("neutral"))]), &[]));
         assert!(neutral.contains("gear: \"neutral\" where \"forward\" or \"reverse\" is expected"), "{neutral}");
         let turn = refused(&file(2, &json!([{ "kind": "turn", "sweep": 1.0, "gear": "reverse" }]), &[]));

@@ -120,11 +120,9 @@ impl GivenFacing {
         let JsonData::Bool(steady) = given.data else {
             return Err(fields.unexpected("steady", given, "true or false"));
         };
-        if !steady {
-            return Ok((own, false));
-        }
-        let own = own.unwrap_or(Self { position: given.position, angle: None, is_angle: false, is_steady: true });
-        Ok((Some(Self { is_steady: true, ..own }), true))
+        let angle = if steady { None } else { Some(0.0) };
+        let own = own.unwrap_or(Self { position: given.position, angle, is_angle: false, is_steady: true });
+        Ok((Some(Self { position: given.position, is_steady: true, ..own }), steady))
     }
 }
 

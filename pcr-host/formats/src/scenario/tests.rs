@@ -56,11 +56,11 @@ fn missing_fields_are_named() {
 fn unknown_keys_are_refused_with_those_that_are_known() {
     refused(
         &with("/path/1/length", &json!(1)),
-        "agent 7, segment 2, length: unknown key; known are kind, radius, sweep, sweep_deg, gear, facing, facing_deg",
+        "agent 7, segment 2, length: unknown key; known are kind, radius, sweep, sweep_deg, gear, facing, facing_deg, steady",
     );
     refused(
         &with("/path/0/sweep", &json!(1)),
-        "agent 7, segment 1, sweep: unknown key; known are kind, length, gear, facing, facing_deg",
+        "agent 7, segment 1, sweep: unknown key; known are kind, length, gear, facing, facing_deg, steady",
     );
     refused(&with("/start/z", &json!(1)), "agent 7, start.z: unknown key; known are x, y, heading, heading_deg");
     refused(
@@ -419,8 +419,8 @@ fn files_may_say_what_they_are() {
     assert_eq!(message, "format: \"other\" where \"pcr-scenario\" is expected");
     let message = file("pcr-locks", 1).unwrap_err().to_string();
     assert_eq!(message, "this is pcr-locks, an answer of pcr; a scenario is expected");
-    let message = file("pcr-scenario", 5).unwrap_err().to_string();
-    assert_eq!(message, "version: 5 where 1 to 4, all that this pcr knows, is expected");
+    let message = file("pcr-scenario", 6).unwrap_err().to_string();
+    assert_eq!(message, "version: 6 where 1 to 5, all that this pcr knows, is expected");
 }
 
 #[test]
