@@ -93,15 +93,17 @@ fn headings(agent: &Agent) -> Vec<f64> {
     let mut facings = Vec::new();
     let mut facing = 0.0;
     for segment in &agent.path {
-        match *segment {
-            PathSegment::Facing { after, .. } => facing = after,
-            // A disc stands while it turns.
-            PathSegment::Turn { .. } => {}
-            _ => facings.push(facing),
+        // A disc stands while it turns.
+        if segment.length() > 0.0 {
+            facings.push(facing);
         }
+        facing = segment.facing_after(facing);
     }
     assert_eq!(facings.len(), motion.path().segments().len());
-    let along = motion.path().segments().iter().map(|segment| segment.heading_at(0.5 * segment.length()).0);
+    let along = motion.path().segments().iter().map(|segment| {
+        let at = if segment.is_steady() { 0.0 } else { 0.5 * segment.length() };
+        segment.heading_at(at).0
+    });
     along.zip(facings).map(|(along, facing)| (along + facing).rem_euclid(TAU)).collect()
 }
 
@@ -205,7 +207,7 @@ fn vehicles_travel_sideways_where_their_edges_say_so() {
     let [x, y] = aslant.footprint.unwrap().polygon()[0];
     let (sin, cos) = 0.3_f64.sin_cos();
     assert!((x - (ahead * cos - left * sin)).hypot(y - (ahead * sin + left * cos)) < 1e-12);
-    // On a curve the heading cannot be the same on the map all along: it is the disc.
+    // On a curve it keeps its heading as well, and does not stop on it.
     let points =
         json!([{ "x": 0.0, "y": 0.0 }, { "x": 3.0, "y": 0.0 }, { "x": 5.0, "y": 0.5 }, { "x": 5.0, "y": 3.0 }]);
     let mut curved = edge(1, "GLOBAL", 0.0);
@@ -213,7 +215,49 @@ fn vehicles_travel_sideways_where_their_edges_say_so() {
     let order = |curved: &serde_json::Value| {
         json!({ "orderId": "o", "nodes": [node(0, 0.0, 0.0), node(1, 5.0, 3.0)], "edges": [curved] }).to_string()
     };
-    assert!(agent(InputFormat::Vda5050, &order(&curved), &[]).footprint.is_none());
+    for orientation in [0.0, -2.5] {
+        curved["orientation"] = json!(orientation);
+        let kept = agent(InputFormat::Vda5050, &order(&curved), &[]);
+        let arcs = kept.path.iter().filter(|segment| matches!(segment, PathSegment::Arc { steady: true, .. })).count();
+        let changes = kept.path.iter().filter(|segment| matches!(segment, PathSegment::Facing { .. })).count();
+        assert!(kept.footprint.is_some() && arcs > 2, "{kept:?}");
+        assert_eq!([arcs, changes], [kept.path.len() - changes, usize::from(orientation != 0.0)], "{kept:?}");
+        for heading in headings(&kept) {
+            let off = (heading - orientation + PI).rem_euclid(TAU) - PI;
+            assert!(off.abs() < 1e-9, "{heading} {orientation}");
+        }
+    }
+    // Of layouts as well, alone and behind another edge, at the end of which it turns to the heading that it keeps.
+    let lif = |k: usize| {
+        let place = |k: usize, x: f64, y: f64| json!({ "nodeId": k.to_string(), "nodePosition": { "x": x, "y": y } });
+        let property = |more: serde_json::Value| {
+            let mut property = json!({ "vehicleTypeId": "v" });
+            property.as_object_mut().unwrap().extend(more.as_object().unwrap().clone());
+            json!([property])
+        };
+        let bend = property(json!({ "vehicleOrientation": 0.4, "orientationType": "GLOBAL",
+            "trajectory": { "degree": 3, "knotVector": [0, 0, 0, 0, 1, 1, 1, 1], "controlPoints": points } }));
+        let edges = json!([
+            { "edgeId": "bend", "startNodeId": "0", "endNodeId": "1", "vehicleTypeEdgeProperties": bend },
+            { "edgeId": "to", "startNodeId": "2", "endNodeId": "0", "vehicleTypeEdgeProperties": property(json!({})) },
+            { "edgeId": "on", "startNodeId": "1", "endNodeId": "3", "vehicleTypeEdgeProperties": property(json!({})) }
+        ]);
+        let nodes = json!([place(0, 0.0, 0.0), place(1, 5.0, 3.0), place(2, -3.0, 0.0), place(3, 5.0, 9.0)]);
+        let text = json!({ "metaInformation": { "lifVersion": "1.0.0" },
+            "layouts": [{ "layoutId": "l", "nodes": nodes, "edges": edges }] });
+        agent(InputFormat::Lif, &text.to_string(), &[["0-1", "2-3"][k]])
+    };
+    let alone = lif(0);
+    assert!(alone.footprint.is_some() && headings(&alone).iter().all(|heading| (heading - 0.4).abs() < 1e-9));
+    let between = lif(1);
+    assert!(
+        between.footprint.is_some() && between.structure().contains("TC") && between.structure().ends_with("CTS"),
+        "{}",
+        between.structure()
+    );
+    let own = headings(&between);
+    assert!(own[0].abs() < 1e-9 && (own[own.len() - 1] - 0.5 * PI).abs() < 1e-9, "{own:?}");
+    assert!(own[1..own.len() - 1].iter().all(|heading| (heading - 0.4).abs() < 1e-9), "{own:?}");
     curved["orientationType"] = json!("TANGENTIAL");
     curved["orientation"] = json!(0.5 * PI);
     assert!(agent(InputFormat::Vda5050, &order(&curved), &[]).footprint.is_some());

@@ -61,8 +61,19 @@ pub(crate) fn lengths_of_outline(
         return parts_of_outline(turn, outline, polygon, far, passes);
     }
     let mut ranges: Vec<[f64; 2]> = Vec::new();
-    let (mut before, mut ends_here) = (0.0, false);
+    let (mut before, mut ends_here, mut facing) = (0.0, false, 0.0);
     for piece in path {
+        // As the vehicle faces where the piece begins.
+        let at_start = facing;
+        facing = piece.shape.facing_after(at_start);
+        let placed: Vec<[f64; 2]>;
+        let outline = match at_start {
+            0.0 => outline,
+            angle => {
+                placed = outline.iter().map(|&corner| turned(corner, angle)).collect();
+                &placed
+            }
+        };
         let mut parts = parts_of_outline(piece, outline, polygon, far, &passes);
         let is_whole = matches!(parts[..], [[from, to]] if from == 0.0 && to == extent(piece));
         if is_turn(piece) {
@@ -82,6 +93,11 @@ pub(crate) fn lengths_of_outline(
         before += piece.shape.length();
     }
     ranges
+}
+
+/// Whether the vehicle keeps its heading on an arc.
+fn is_steady(piece: &PlacedSegment) -> bool {
+    matches!(piece.shape, PathSegment::Arc { steady: true, .. })
 }
 
 /// Length of a piece \[m\], or the angle of a turn in place.
@@ -128,7 +144,7 @@ fn parts_of_outline(
     cuts.push(length);
     for pair in cuts.windows(2) {
         let part = first_part(piece, (pair[0] + pair[1]) / 2.0);
-        let (at, heading) = (part.end(), part.heading_at_end());
+        let (at, heading) = (part.end(), if is_steady(piece) { piece.heading } else { part.heading_at_end() });
         let placed: Vec<[f64; 2]> = outline.iter().map(|&corner| moved(at, turned(corner, heading))).collect();
         if !passes(&placed) {
             continue;
@@ -155,9 +171,12 @@ fn turned([x, y]: [f64; 2], angle: f64) -> [f64; 2] {
 fn carried(piece: &PlacedSegment, corner: [f64; 2]) -> PlacedSegment {
     let start = moved(piece.start, turned(corner, piece.heading));
     match piece.shape {
-        PathSegment::Arc { sweep, .. } => about(start, centre(piece), sweep),
+        PathSegment::Arc { sweep, steady: false, .. } => about(start, centre(piece), sweep),
         PathSegment::Turn { sweep } | PathSegment::Kink { sweep } => about(start, piece.start, sweep),
-        PathSegment::Line { .. } | PathSegment::Facing { .. } => PlacedSegment { start, ..*piece },
+        // It does not turn.
+        PathSegment::Line { .. } | PathSegment::Facing { .. } | PathSegment::Arc { .. } => {
+            PlacedSegment { start, ..*piece }
+        }
     }
 }
 
@@ -165,10 +184,10 @@ fn carried(piece: &PlacedSegment, corner: [f64; 2]) -> PlacedSegment {
 fn seen(piece: &PlacedSegment, point: [f64; 2]) -> PlacedSegment {
     let from = |at: [f64; 2]| turned([at[0] - piece.start[0], at[1] - piece.start[1]], -piece.heading);
     match piece.shape {
-        PathSegment::Line { .. } | PathSegment::Facing { .. } => {
+        PathSegment::Arc { sweep, steady: false, .. } => about(from(point), from(centre(piece)), -sweep),
+        PathSegment::Line { .. } | PathSegment::Facing { .. } | PathSegment::Arc { .. } => {
             PlacedSegment { start: from(point), heading: PI, shape: piece.shape }
         }
-        PathSegment::Arc { sweep, .. } => about(from(point), from(centre(piece)), -sweep),
         PathSegment::Turn { sweep } | PathSegment::Kink { sweep } => about(from(point), [0.0; 2], -sweep),
     }
 }

@@ -160,6 +160,7 @@ fn constructors<S: Scalar>() -> Result<(), InvalidInput> {
     let path = Path::line(path, number())?;
     let path = Path::arc(path, number(), any(TurnSide::Left), number())?;
     let path = Path::arc_by(path, number(), number())?;
+    let path = Path::steady_arc(path, number(), any(TurnSide::Left), number())?;
     let path = Path::pivot(path, number(), number())?;
     let path = Path::reverse(Path::facing(path, angle::<S>())?)?;
     let path = Path::turn(any(path), angle::<S>())?;
@@ -168,6 +169,8 @@ fn constructors<S: Scalar>() -> Result<(), InvalidInput> {
     let segment = Segment::standing(any(pose))?;
     let segment = Segment::then_line(&segment, number())?;
     let segment = any(Segment::then_arc(&segment, number(), any(TurnSide::Right), number())?);
+    let segment = any(Segment::then_steady_arc(&segment, number(), any(TurnSide::Left), number())?);
+    any(Segment::is_steady(&segment));
     let segment = any(Segment::then_pivot(&segment, number(), any(TurnSide::Right), number())?);
     let segment = any(Segment::turned(segment, angle::<S>())?);
     let segment = any(Segment::facing(segment, angle::<S>())?);
@@ -221,6 +224,7 @@ fn storage<S: Scalar>() -> Result<(), FleetStorageError> {
     let path = NewAgent::line(path, number())?;
     let path = NewAgent::arc(path, number(), any(TurnSide::Left), number())?;
     let path = NewAgent::arc_by(path, number(), number())?;
+    let path = NewAgent::steady_arc(path, number(), any(TurnSide::Left), number())?;
     let path = NewAgent::pivot(path, number(), number())?;
     let path = NewAgent::reverse(NewAgent::facing(path, angle::<S>())?)?;
     let path = NewAgent::turn(path, angle::<S>())?;

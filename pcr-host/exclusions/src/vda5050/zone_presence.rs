@@ -169,7 +169,7 @@ impl OutlinePresence<'_> {
         };
         // What the vehicle itself covers, of which the agent has the hull if it may face either way, and the margin with other
         // deviations.
-        let known = step.facing().angle().filter(|_| agent.footprint.is_some());
+        let known = step.facing().angle_at(0.0).filter(|_| agent.footprint.is_some());
         let contour = known.and_then(|_| self.vehicle.facing(step.facing()).footprint);
         let off = agent.radius - self.vehicle.radius + SURE;
         let mut certain = Vec::new();

@@ -294,9 +294,9 @@ fn body(
     let (mut at, mut end, mut joint) = (None, None, None::<[f64; 2]>);
     let all = trail.iter().flat_map(|&atom| {
         let element = &site.atoms[atom];
-        element.segments.iter().filter(|segment| segment.length() > 0.0).map(|segment| (segment, element.facing))
+        element.segments.iter().filter(|segment| segment.length() > 0.0).map(move |segment| (segment, element))
     });
-    for (segment, facing) in all {
+    for (segment, element) in all {
         let place = |u: f64| {
             let point = segment.point_at(u);
             [point.x, point.y]
@@ -333,13 +333,16 @@ fn body(
             course,
             length: keep,
             turns,
-            heading: RawHeading::Along(RawAngle::Radians(facing)),
+            heading: match element.steady {
+                Some(heading) => RawHeading::Steady(RawAngle::Radians(heading)),
+                None => RawHeading::Along(RawAngle::Radians(element.facing)),
+            },
             from,
             to,
         });
         from = to;
         direction += turned + sweep;
-        heading = start + sweep + facing;
+        heading = element.steady.unwrap_or(start + sweep + element.facing);
         end = Some(place(skip + keep));
     }
     let (start, angle) = at.unwrap_or((begin.at, begin.heading));

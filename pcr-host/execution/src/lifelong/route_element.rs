@@ -26,8 +26,10 @@ pub(super) struct RouteElement {
     pub(super) headings: Option<[f64; 2]>,
     pub(super) shapes: Vec<PlacedSegment>,
     pub(super) segments: Vec<Segment<f64>>,
-    /// Angle from the direction of travel to the heading of the robot \[rad\].
+    /// Angle from the direction of travel to the heading of the robot at the start \[rad\].
     pub(super) facing: f64,
+    /// The heading that the robot keeps all along, though its way is curved \[rad\].
+    pub(super) steady: Option<f64>,
     phases: Vec<Phase<f64>>,
     /// Least and largest x and y \[m\].
     pub(super) bounds: [[f64; 2]; 2],
@@ -58,15 +60,21 @@ impl ElementMaker<'_> {
         shapes.retain(|placed| placed.shape.length() > 0.0);
         let from = self.layout.nodes[step.origin()].point;
         let speed = step.steady(self.vehicle.speed);
-        let facing = step.facing().angle().filter(|_| self.has_outline() && self.is_known).unwrap_or(0.0);
+        let said = step.facing();
+        let steady = said.heading().filter(|_| self.has_outline() && self.is_known);
+        let ahead = shapes.first().map_or(0.0, |first| first.heading);
+        let facing = said.angle_at(ahead).filter(|_| self.has_outline() && self.is_known).unwrap_or(0.0);
         let abilities = KinematicLimits::of(&self.vehicle);
         // With this lever the turn takes as long at the speed of the edge as it would by itself.
         let lever = |turn: f64| {
             if turn.abs() > STRAIGHT { speed * abilities.turn(turn) / turn.abs() } else { LEVER }
         };
-        let segments = path(&shapes, (from, 0.0), facing, self.has_outline().then_some(&lever))?;
+        let segments = path(&shapes, (from, 0.0), (facing, steady), self.has_outline().then_some(&lever))?;
         let ends = shapes.first().zip(shapes.last());
-        let headings = ends.map(|(first, last)| [first.heading, last.heading_at_end()].map(|heading| heading + facing));
+        let headings = ends.map(|(first, last)| match steady {
+            Some(heading) => [heading; 2],
+            None => [first.heading, last.heading_at_end()].map(|heading| heading + facing),
+        });
         RouteElement {
             ends: [step.origin(), step.target()],
             speed,
@@ -74,6 +82,7 @@ impl ElementMaker<'_> {
             bounds: bounds(&shapes, from),
             shapes,
             facing,
+            steady,
             edge: Some(edge),
             layer: self.layer,
             ..RouteElement::default()
@@ -92,6 +101,7 @@ impl Default for RouteElement {
             shapes: Vec::new(),
             segments: Vec::new(),
             facing: 0.0,
+            steady: None,
             phases: Vec::new(),
             bounds: [[0.0; 2]; 2],
             edge: None,
@@ -114,7 +124,7 @@ impl RouteElement {
     }
 
     pub(super) fn standing(node: usize, at: [f64; 2], heading: Option<f64>) -> Result<Self, InvalidInput> {
-        let segments = path(&[], (at, heading.unwrap_or(0.0)), 0.0, None)?;
+        let segments = path(&[], (at, heading.unwrap_or(0.0)), (0.0, None), None)?;
         let headings = heading.map(|heading| [heading; 2]);
         Self { ends: [node; 2], headings, bounds: [at, at], ..Self::default() }.with(segments)
     }
@@ -135,7 +145,16 @@ impl RouteElement {
 
     /// Heading of a robot at a length \[rad\].
     pub(super) fn heading(&self, length: f64) -> f64 {
+        if let Some(heading) = self.steady {
+            return heading;
+        }
         PathRef::new(&self.segments).map_or(0.0, |path| path.pose_at(length).heading.0) + self.facing
+    }
+
+    /// Angle from the direction of travel to the heading of the robot at the end \[rad\].
+    pub(super) fn facing_at_end(&self) -> f64 {
+        let end = self.shapes.last().map(PlacedSegment::heading_at_end);
+        self.steady.zip(end).map_or(self.facing, |(heading, end)| wrapped(heading - end))
     }
 
     /// Largest distance between the ends of its curve and its nodes \[m\].
@@ -170,11 +189,12 @@ fn side(turn: f64) -> TurnSide {
     if turn > 0.0 { TurnSide::Left } else { TurnSide::Right }
 }
 
-/// The segments, with turns in place where the shapes meet at an angle: without a length, or with the lever of the turn \[m\].
+/// The segments, with turns in place where the shapes meet at an angle: without a length, or with the lever of the turn \[m\]. A robot that keeps its
+/// heading does not turn there.
 fn path(
     shapes: &[PlacedSegment],
     (at, heading): ([f64; 2], f64),
-    facing: f64,
+    (facing, steady): (f64, Option<f64>),
     lever: Option<&dyn Fn(f64) -> f64>,
 ) -> Result<Vec<Segment<f64>>, InvalidInput> {
     let mut heading = shapes.first().map_or(heading, |first| first.heading);
@@ -187,7 +207,7 @@ fn path(
     for placed in shapes {
         let turn = wrapped(placed.heading - heading);
         if turn != 0.0 {
-            if let Some(lever) = lever {
+            if let Some(lever) = lever.filter(|_| steady.is_none()) {
                 let lever = lever(turn);
                 last = last.then_pivot(lever, side(turn), lever * turn.abs())?;
                 segments.push(last);
@@ -200,6 +220,9 @@ fn path(
         }
         last = match placed.shape {
             PathSegment::Line { length } => last.then_line(length)?,
+            PathSegment::Arc { radius, sweep, .. } if steady.is_some() => {
+                last.then_steady_arc(radius, side(sweep), radius * sweep.abs())?
+            }
             PathSegment::Arc { radius, sweep, .. } => last.then_arc(radius, side(sweep), radius * sweep.abs())?,
             // A route is of lines and arcs of edges, and turns where they meet.
             PathSegment::Turn { .. } | PathSegment::Kink { .. } => {
@@ -207,6 +230,9 @@ fn path(
             }
             PathSegment::Facing { .. } => return Err(InvalidInput::Disconnected("path that leaves its heading")),
         };
+        if let Some(own) = steady {
+            last = last.facing(Radians(wrapped(own - placed.heading)))?;
+        }
         heading = placed.heading_at_end();
         segments.push(last);
     }

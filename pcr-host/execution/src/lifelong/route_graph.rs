@@ -223,7 +223,10 @@ impl RouteGraph {
     /// Whether a robot has another angle to its direction of travel on the second of two edges that follow one another.
     pub(super) fn changes_facing(&self, before: usize, after: usize) -> bool {
         let [before, after] = [before, after].map(|atom| &self.atoms[atom]);
-        before.edge.is_some() && after.edge.is_some() && before.facing != after.facing
+        let [from, to] = [before.facing_at_end(), after.facing];
+        let is_steady = before.steady.or(after.steady).is_some();
+        let changes = if is_steady { wrapped(to - from).abs() > STRAIGHT } else { to != from };
+        before.edge.is_some() && after.edge.is_some() && changes
     }
 
     /// Number of nodes of the layout, each of which is in all layers.

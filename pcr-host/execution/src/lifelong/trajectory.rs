@@ -52,6 +52,7 @@ impl DrivenPath {
         self.before = (self.at, self.heading);
         let placed = PlacedSegment { start: self.at, heading: self.heading, shape };
         (self.at, self.heading) = (placed.end(), placed.heading_at_end());
+        self.facing = shape.facing_after(self.facing);
         let ends = [self.driven, self.driven + driven];
         self.driven = ends[1];
         self.segments.push(DrivenSegment { shape, driven: ends, is_standing_turn });
@@ -87,7 +88,7 @@ impl DrivenPath {
 
     /// Goes on in a direction \[rad\] with this angle from it to the heading of the robot, which stands and does not turn where that changes.
     fn set_facing(&mut self, at: [f64; 2], direction: f64, facing: f64) {
-        if self.facing != facing {
+        if wrapped(self.facing - facing).abs() > NO_TURN {
             self.face(if self.start.is_none() { at } else { self.at }, direction + facing - self.facing);
             self.push(PathSegment::Facing { before: self.facing, after: facing }, 0.0, false);
             self.facing = facing;
@@ -187,13 +188,15 @@ fn add(path: &mut DrivenPath, site: &RouteGraph, atom: usize, mut left: f64) {
         // At a node the heading of a turn is that of the robot.
         let heading = segment.heading_at(0.0).0;
         if element.edge.is_some() {
-            path.set_facing(point(0.0), heading, element.facing);
+            let own = element.steady.map_or(element.facing, |own| wrapped(own - heading));
+            path.set_facing(point(0.0), heading, own);
         }
         match segment.curve() {
             Curve::Line => path.line(point(0.0), point(keep), keep),
             Curve::Arc { radius, turn } => {
                 path.face(point(0.0), heading);
-                path.push(PathSegment::arc(radius, signed(keep / radius, turn)), keep, false);
+                let steady = element.steady.is_some();
+                path.push(PathSegment::Arc { radius, sweep: signed(keep / radius, turn), steady }, keep, false);
             }
             Curve::Pivot { lever, turn } => {
                 path.begin(point(0.0), heading);

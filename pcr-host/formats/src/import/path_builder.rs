@@ -4,6 +4,7 @@
 //! well, and turns by what its own heading differs. A line is aimed at its end from the point that the path has really reached, so
 //! that gaps do not add up. The largest distance from the requested geometry is recorded.
 
+use super::vehicle::Facing;
 use crate::plane_geometry::{distance, within_half_turn, wrapped};
 use crate::scenario::{KINK, PathSegment, PlacedSegment};
 use std::f64::consts::PI;
@@ -35,6 +36,21 @@ impl LimitedSegment {
     }
 }
 
+/// How a vehicle faces \[rad\].
+#[derive(Clone, Copy, Debug)]
+enum Faces {
+    /// At an angle from its direction of travel.
+    Angle(f64),
+    /// At an angle on the map.
+    Heading(f64),
+}
+
+impl Default for Faces {
+    fn default() -> Self {
+        Self::Angle(0.0)
+    }
+}
+
 /// A path in the making.
 #[derive(Clone, Debug, Default)]
 pub(super) struct LimitedPathBuilder {
@@ -45,8 +61,8 @@ pub(super) struct LimitedPathBuilder {
     at: [f64; 2],
     /// Direction of travel \[rad\].
     heading: f64,
-    /// The angle from the direction of travel to the heading of the vehicle, and that in what is added from now on \[rad\].
-    facing: [f64; 2],
+    /// The angle from the direction of travel to the heading of the vehicle \[rad\], and how it faces in what is added from now on.
+    facing: (f64, Faces),
     deviation: f64,
     turned: f64,
     speed: Option<f64>,
@@ -72,9 +88,12 @@ impl LimitedPathBuilder {
         (self.speed, self.rotation) = (speed, rotation);
     }
 
-    /// The vehicle travels at this angle from its direction to its heading on what is added from now on \[rad\].
-    pub(super) fn set_facing(&mut self, facing: f64) {
-        self.facing[1] = facing;
+    /// The vehicle faces so on what is added from now on; ahead where it is not known.
+    pub(super) fn face_as(&mut self, facing: Facing) {
+        self.facing.1 = match facing.heading() {
+            Some(heading) => Faces::Heading(heading),
+            None => Faces::Angle(facing.angle().unwrap_or(0.0)),
+        };
     }
 
     /// Adds a line to a point from where the path is, which ought to be `from`.
@@ -110,21 +129,35 @@ impl LimitedPathBuilder {
                 // Displaced as a whole, and turned by what the headings differ.
                 let turned = within_half_turn(self.heading - piece.heading).abs() * radius * sweep.abs().min(PI);
                 self.deviation = self.deviation.max(distance(self.at, piece.start) + turned);
-                self.push(piece.shape);
+                let steady = matches!(self.facing.1, Faces::Heading(_));
+                self.push(match piece.shape {
+                    PathSegment::Arc { radius, sweep, .. } if steady => PathSegment::Arc { radius, sweep, steady },
+                    shape => shape,
+                });
             }
         }
     }
 
     /// Turns in place to a heading; the path begins here if it has not begun.
     fn face(&mut self, at: [f64; 2], heading: f64) {
+        let after = match self.facing.1 {
+            Faces::Angle(angle) => angle,
+            Faces::Heading(own) => wrapped(own - heading),
+        };
         if self.start.is_none() {
-            let own = if self.facing[1] == 0.0 { heading } else { wrapped(heading + self.facing[1]) };
+            let own = match self.facing.1 {
+                Faces::Heading(own) => own,
+                Faces::Angle(_) if after == 0.0 => heading,
+                Faces::Angle(_) => wrapped(heading + after),
+            };
             (self.at, self.heading) = (at, own);
             self.start = Some([at[0], at[1], own]);
         }
-        let [before, after] = self.facing;
-        if before != after {
-            self.facing[0] = after;
+        let before = self.facing.0;
+        // Where a heading is kept from one arc to the next, rounding is no change.
+        let goes_on = matches!(self.facing.1, Faces::Heading(_)) && within_half_turn(after - before).abs() <= STRAIGHT;
+        if before != after && !goes_on {
+            self.facing.0 = after;
             self.push(PathSegment::Facing { before, after });
         }
         let sweep = within_half_turn(heading - self.heading);
@@ -146,6 +179,7 @@ impl LimitedPathBuilder {
     fn push(&mut self, shape: PathSegment) {
         let placed = PlacedSegment { start: self.at, heading: self.heading, shape };
         (self.at, self.heading) = (placed.end(), placed.heading_at_end());
+        self.facing.0 = shape.facing_after(self.facing.0);
         self.length += shape.length();
         let next = LimitedSegment { shape, speed: self.speed, rotation: self.rotation };
         let last = self.stretches.last_mut().filter(|last| (last.speed, last.rotation) == (next.speed, next.rotation));

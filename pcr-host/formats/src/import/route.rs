@@ -58,8 +58,9 @@ impl RouteStep<'_> {
     /// The largest speed \[m/s\], up to this one, at which it can be travelled as a whole.
     pub fn steady(self, fastest: f64) -> f64 {
         let rotation = self.edge.rotation.unwrap_or(f64::INFINITY);
+        let turns = self.facing().heading().is_none();
         let bends = self.edge.curve.iter().filter_map(|piece| match piece.shape {
-            PathSegment::Arc { radius, .. } => Some(radius * rotation),
+            PathSegment::Arc { radius, .. } if turns => Some(radius * rotation),
             _ => None,
         });
         bends.chain(self.speed()).fold(fastest, f64::min)
@@ -191,9 +192,12 @@ fn trace(layout: &Layout, from: usize, steps: &[RouteStep<'_>], in_gears: bool) 
     for (k, (step, arc)) in steps.iter().zip(arcs).enumerate() {
         let (edge, target) = (step.edge, at(step.target()));
         tracer.limit(step.speed(), edge.rotation);
-        tracer.set_facing(step.facing().angle().filter(|_| in_gears).unwrap_or(0.0));
+        tracer.face_as(if in_gears { step.facing() } else { Facing::Ahead });
         deviation = deviation.max(step.deviation() + longer);
-        turned = turned.max(step.turned() + turn_over(&edge.curve, longer));
+        // Who keeps his heading is not turned with the curve.
+        if !in_gears || step.facing().heading().is_none() {
+            turned = turned.max(step.turned() + turn_over(&edge.curve, longer));
+        }
         longer += edge.longer;
         let curve = step.curve();
         if !edge.is_straight() {
@@ -406,11 +410,15 @@ fn travel(
 pub fn ride(vehicle: &VehicleTraits, step: RouteStep<'_>) -> Agent {
     let mut tracer = LimitedPathBuilder::default();
     tracer.limit(step.speed(), step.edge.rotation);
+    let steady = step.facing().heading().is_some() && vehicle.footprint.is_some();
+    if steady {
+        tracer.face_as(step.facing());
+    }
     let curve = step.curve();
     curve.iter().for_each(|piece| tracer.follow(piece));
     let mut trace = tracer.finish(curve.first().map_or([0.0; 2], |first| first.start));
     trace.deviation += step.deviation();
-    trace.turned += step.turned();
+    trace.turned += if steady { 0.0 } else { step.turned() };
     agent(0, &trace, vehicle, 0.0)
 }
 

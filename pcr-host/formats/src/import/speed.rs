@@ -29,7 +29,7 @@ fn limited(stretch: &LimitedSegment, vehicle: &VehicleTraits) -> SegmentLimits {
             (length, speed, acceleration) = (sweep.abs(), rotation, vehicle.rotation_acceleration);
             true
         }
-        PathSegment::Arc { radius, .. } => {
+        PathSegment::Arc { radius, steady: false, .. } => {
             speed = speed.min(radius * rotation);
             false
         }

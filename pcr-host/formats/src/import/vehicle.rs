@@ -2,6 +2,7 @@
 
 use super::{ImportError, InputFormat, WarningCode, Warnings};
 use crate::footprint::Footprint;
+use crate::plane_geometry::wrapped;
 use crate::scenario::REVERSE;
 use std::path::PathBuf;
 
@@ -54,11 +55,13 @@ pub enum Facing {
     Either,
     /// At another angle to its path, which is the same all along: it travels sideways.
     Sideways(FacingAngle),
+    /// At this angle on the map, along an edge that is curved: it does not turn there.
+    Steady(FacingAngle),
     /// Any way.
     Any,
 }
 
-/// An angle from the direction of travel to the heading. Angles are the same if their numbers are.
+/// An angle from the direction of travel to the heading, or from the x-axis of the map. Angles are the same if their numbers are.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct FacingAngle(u64);
 
@@ -68,31 +71,55 @@ impl Facing {
         Self::Sideways(FacingAngle(angle.to_bits()))
     }
 
+    /// At an angle on the map \[rad\].
+    pub fn steady(heading: f64) -> Self {
+        Self::Steady(FacingAngle(heading.to_bits()))
+    }
+
     /// What holds if either of two may.
     #[must_use]
     pub fn or(self, other: Self) -> Self {
         match (self, other) {
             (Self::Any, _) | (_, Self::Any) => Self::Any,
             (a, b) if a == b => a,
-            (Self::Sideways(_), _) | (_, Self::Sideways(_)) => Self::Any,
-            _ => Self::Either,
+            (Self::Ahead | Self::Backward | Self::Either, Self::Ahead | Self::Backward | Self::Either) => Self::Either,
+            _ => Self::Any,
         }
     }
 
-    /// Angle from the direction of travel to its heading \[rad\], where it is known.
+    /// Angle from the direction of travel to its heading \[rad\], where it is known and the same all along.
     pub fn angle(self) -> Option<f64> {
         match self {
             Self::Ahead => Some(0.0),
             Self::Backward => Some(REVERSE),
             Self::Sideways(FacingAngle(angle)) => Some(f64::from_bits(angle)),
-            Self::Either | Self::Any => None,
+            Self::Steady(_) | Self::Either | Self::Any => None,
         }
     }
 
-    /// Whether a vehicle that faces so on the parts of a path faces one way on some of them and another way on others, and it is known of each.
+    /// The same where the direction of travel is `ahead` \[rad\].
+    pub fn angle_at(self, ahead: f64) -> Option<f64> {
+        match self {
+            Self::Steady(FacingAngle(heading)) => Some(wrapped(f64::from_bits(heading) - ahead)),
+            other => other.angle(),
+        }
+    }
+
+    /// Its heading on the map \[rad\], where that is the same all along a curve.
+    pub fn heading(self) -> Option<f64> {
+        match self {
+            Self::Steady(FacingAngle(heading)) => Some(f64::from_bits(heading)),
+            _ => None,
+        }
+    }
+
+    /// Whether the angle from the direction of travel to the heading of a vehicle that faces so on the parts of a path changes, and is known all
+    /// along.
     pub(super) fn changes(parts: impl Iterator<Item = Self>) -> bool {
-        let all = parts.map(Self::angle).collect::<Option<Vec<_>>>();
-        all.is_some_and(|all| all.windows(2).any(|pair| pair[0] != pair[1]))
+        let all: Vec<Self> = parts.collect();
+        all.iter().all(|part| part.angle_at(0.0).is_some())
+            && (all.iter().any(|part| part.heading().is_some())
+                || all.windows(2).any(|pair| pair[0].angle() != pair[1].angle()))
     }
 
     /// What holds on a path of two parts in one gear: a vehicle that faces another way on the second one has turned round between them.
@@ -107,12 +134,12 @@ impl Facing {
 
 impl VehicleTraits {
     /// The vehicle as if it faced along its path, covering what it covers where it faces so: an outline that may face either way is the
-    /// convex hull of both, and one that may face any way is the disc around it.
+    /// convex hull of both, and one that may face any way is the disc around it. One that keeps its heading stays as it is: its path has the angle.
     #[must_use]
     pub fn facing(&self, facing: Facing) -> Self {
         let Some(footprint) = &self.footprint else { return self.clone() };
         let outline = match facing {
-            Facing::Ahead => return self.clone(),
+            Facing::Ahead | Facing::Steady(_) => return self.clone(),
             Facing::Backward | Facing::Either if footprint.is_same_backward() => return self.clone(),
             Facing::Backward => Some(footprint.backward()),
             Facing::Either => footprint.either_way(),

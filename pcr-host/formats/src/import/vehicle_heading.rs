@@ -70,7 +70,7 @@ pub(super) fn turn_at_nodes(given: &[(usize, f64)], edges: &mut [LayoutEdge], ou
         let is_there = |place: &usize| {
             let Some(edge) = edges.get(*place) else { return false };
             let Some((first, last)) = edge.curve.first().zip(edge.curve.last()) else { return false };
-            let faces = |heading: f64| match (edge.facing[0], edge.facing[0].angle()) {
+            let faces = |heading: f64| match (edge.facing[0], edge.facing[0].angle_at(heading)) {
                 (_, Some(off)) => is_ahead(outline, angle - heading - off),
                 (Facing::Any, None) => true,
                 (_, None) => [0.0, PI].iter().any(|off| is_ahead(outline, angle - heading - off)),
@@ -128,8 +128,8 @@ pub(super) fn theta(object: &JsonObject<'_>) -> Result<Option<f64>, ImportError>
     object.number("theta")?.map(|theta| in_radians(object, "theta", theta)).transpose()
 }
 
-/// Which way a vehicle faces on an edge that says so, by orientations \[rad\] of which it takes any one: those on the map, of which only a
-/// straight edge tells which way along it they are, or those with respect to the edge.
+/// Which way a vehicle faces on an edge that says so, by orientations \[rad\] of which it takes any one: those on the map, which the vehicle keeps
+/// where the edge is curved, or those with respect to the edge. A straight edge has a heading.
 ///
 /// # Errors
 /// [`ImportError`] for a type of orientation that is not known, and for an orientation beyond one turn, which is one in degrees.
@@ -158,7 +158,7 @@ pub(super) fn of_edge(
         Some(off) if off.abs() <= ROUNDING => Facing::Ahead,
         Some(off) if off.abs() >= PI - ROUNDING => Facing::Backward,
         Some(off) => Facing::sideways(off),
-        None => Facing::Any,
+        None => Facing::steady(*orientation),
     };
     Ok(orientations.iter().map(facing).reduce(Facing::or))
 }

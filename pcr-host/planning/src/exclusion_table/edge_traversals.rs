@@ -206,10 +206,13 @@ impl<'a> EdgeTraversals<'a> {
         let before = self.turns(EdgeApproach { step, heading: start.heading }, 0);
         let after = self.turns(EdgeApproach { step, heading: end.heading }, 1);
         // Before a turn to the left the vehicle looks further to the right.
+        // The outline of one that keeps its heading on the map is not turned from its way.
+        let own = step.facing().heading();
         let turns =
             [(from, start, before.map(|turn| -turn)), (to, end, after)].into_iter().filter_map(|(at, end, turns)| {
                 let [right, left] = [turns[0].min(turns[1]), turns[0].max(turns[1])];
-                let agent = (right < left).then(|| turn(&vehicle, end.at, end.heading + right, left - right));
+                let heading = own.unwrap_or(end.heading);
+                let agent = (right < left).then(|| turn(&vehicle, end.at, heading + right, left - right));
                 Some(EdgeTraversal { agent: agent?, lengths: LengthMapping::At(at) })
             });
         // Half a turn within the edge.
@@ -218,7 +221,8 @@ impl<'a> EdgeTraversals<'a> {
         let halves = step.curve().into_iter().filter(|piece| piece.shape.length() > 0.0).filter_map(|piece| {
             // Where it turns back in one gear or the other, it may also turn by less.
             let least = if step.facing() == Facing::Ahead { PI - KINK } else { FRAC_PI_2 };
-            let is_half = before.is_some_and(|before| wrapped(piece.heading - before.heading_at_end()).abs() > least);
+            let is_half = own.is_none()
+                && before.is_some_and(|before| wrapped(piece.heading - before.heading_at_end()).abs() > least);
             let at = if step.backward { length - travelled } else { travelled };
             (before, travelled) = (Some(piece), travelled + piece.shape.length());
             is_half
@@ -272,9 +276,9 @@ impl<'a> EdgeTraversals<'a> {
         let mut range = [0.0_f64; 2];
         for other in &sides[side] {
             let [arrives, leaves] = if side == 0 { [other, &own] } else { [&own, other] };
-            let [before, after] = [arrives, leaves].map(|way| way.step.facing());
+            let [before, after] = [arrives, leaves].map(|way| way.step.facing().angle_at(way.heading));
             // What faces another way on the next edge may turn round in between, to either side.
-            let Some((before, after)) = before.angle().zip(after.angle()) else { return [-PI, PI] };
+            let Some((before, after)) = before.zip(after) else { return [-PI, PI] };
             let turn = wrapped(arrives.turn(leaves) + after - before);
             let leads_on = |way: &EdgeApproach<'_>| !way.step.edge.closed && !arrives.turns_back(way);
             if arrives.turns_back(leaves) && sides[1].iter().any(leads_on) {
@@ -388,7 +392,10 @@ pub fn swept(agent: &Agent, pieces: &[PlacedSegment]) -> Vec<SweptShape> {
     };
     let parts: Vec<_> = footprint.parts().collect();
     let mut shapes = Vec::new();
+    let mut facing = 0.0;
     for piece in pieces {
+        let at_start = facing;
+        facing = piece.shape.facing_after(at_start);
         let sweep = piece.shape.sweep();
         let steps = (sweep.abs() / STEP).ceil().max(1.0);
         let half = sweep / steps / 2.0;
@@ -398,11 +405,11 @@ pub fn swept(agent: &Agent, pieces: &[PlacedSegment]) -> Vec<SweptShape> {
                 return (piece.start, piece.heading + sweep * (step / steps));
             }
             let part = piece.part(0.0, length * (step / steps));
-            (part.end(), part.heading_at_end())
+            (part.end(), part.heading_at_end() + part.shape.facing_after(at_start))
         };
         // Of the centre about which it turns, if it does.
         let radius = match piece.shape {
-            PathSegment::Arc { radius, .. } => Some(radius),
+            PathSegment::Arc { radius, steady: false, .. } => Some(radius),
             PathSegment::Turn { .. } | PathSegment::Kink { .. } => Some(0.0),
             _ => None,
         };
@@ -422,6 +429,11 @@ pub fn swept(agent: &Agent, pieces: &[PlacedSegment]) -> Vec<SweptShape> {
                         [x + u - tangent * v, y + v + tangent * u]
                     });
                     corners.extend(meets.collect::<Vec<_>>());
+                } else if let PathSegment::Arc { radius, .. } = piece.shape {
+                    // The same of a corner that goes as far as the reference point, beside it.
+                    let ([x, y], heading) = ends[0];
+                    let (ahead, way) = (piece.heading + sweep * (step as f64 / steps), radius * half.tan().abs());
+                    corners.extend(placed(part.polygon(), [x + way * ahead.cos(), y + way * ahead.sin()], heading));
                 }
                 shapes.push(SweptShape::Area(hull(corners), footprint.growth()));
             }

@@ -205,7 +205,7 @@ impl Vda5050Reader<'_> {
         let edges: Vec<(&Option<[f64; 2]>, &Facing)> = way.headings.iter().zip(&way.facings).collect();
         let at = |edge: usize, end: usize| {
             let (headings, facing) = edges.get(edge)?;
-            headings.map(|headings| (headings[end], facing.angle()))
+            headings.map(|headings| (headings[end], facing.angle_at(headings[end])))
         };
         for (k, node) in nodes.iter().enumerate() {
             let Some(theta) = node.theta()? else { continue };
@@ -225,7 +225,7 @@ impl Vda5050Reader<'_> {
 impl OrderPathBuilder {
     /// The vehicle faces so on the next edge.
     fn faces(&mut self, next: Facing) {
-        self.tracers[1].set_facing(next.angle().unwrap_or(0.0));
+        self.tracers[1].face_as(next);
         self.facings.push(next);
     }
 
