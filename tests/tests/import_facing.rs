@@ -245,13 +245,13 @@ fn vehicles_travel_sideways_where_their_edges_say_so() {
         let nodes = json!([place(0, 0.0, 0.0), place(1, 5.0, 3.0), place(2, -3.0, 0.0), place(3, 5.0, 9.0)]);
         let text = json!({ "metaInformation": { "lifVersion": "1.0.0" },
             "layouts": [{ "layoutId": "l", "nodes": nodes, "edges": edges }] });
-        agent(InputFormat::Lif, &text.to_string(), &[["0-1", "2-3"][k]])
+        agent(InputFormat::Lif, &text.to_string(), &[["0:1", "2:3"][k]])
     };
     let alone = lif(0);
     assert!(alone.footprint.is_some() && headings(&alone).iter().all(|heading| (heading - 0.4).abs() < 1e-9));
     let between = lif(1);
     assert!(
-        between.footprint.is_some() && between.structure().contains("TC") && between.structure().ends_with("CTS"),
+        between.footprint.is_some() && between.structure().contains("CT") && between.structure().ends_with("CTS"),
         "{}",
         between.structure()
     );
