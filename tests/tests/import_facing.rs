@@ -251,7 +251,7 @@ fn vehicles_travel_sideways_where_their_edges_say_so() {
     assert!(alone.footprint.is_some() && headings(&alone).iter().all(|heading| (heading - 0.4).abs() < 1e-9));
     let between = lif(1);
     assert!(
-        between.footprint.is_some() && between.structure().contains("CT") && between.structure().ends_with("CTS"),
+        between.footprint.is_some() && between.structure().starts_with("STCA") && between.structure().ends_with("ATCS"),
         "{}",
         between.structure()
     );
