@@ -25,7 +25,7 @@ fn of_seed(seed: u64, random: &mut Random, segments: usize) -> Case {
         return case;
     }
     if seed >= STEADY {
-        let case = if seed % 3 == 0 { case.with_pivots(random) } else { case };
+        let case = if seed.is_multiple_of(3) { case.with_pivots(random) } else { case };
         return case.with_steady(random);
     }
     match seed % 3 {
