@@ -128,7 +128,8 @@ pub(crate) fn line_contacts<S: Scalar>(
 ) {
     let corners = moving.corners.as_slice();
     let down = opposite(normal);
-    let lowest = || corners.iter().enumerate().filter(|&(index, _)| supports(corners, index, down, slack));
+    // Not enumerate(): here the compiler would not see that its counter cannot overflow.
+    let lowest = || (0..corners.len()).zip(corners).filter(|&(index, _)| supports(corners, index, down, slack));
     match moving.carriage {
         Carriage::Straight => {
             let along = moving.segment.direction;
