@@ -25,7 +25,7 @@ typedef struct PcrFleet {
  Memory for a segment of a path: one for each leg, or one for an agent that stands.
  */
 typedef struct PcrSegmentStorage {
-  float opaque[32];
+  float opaque[33];
 } PcrSegmentStorage;
 
 /*

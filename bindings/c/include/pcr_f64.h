@@ -25,7 +25,7 @@ typedef struct PcrF64Fleet {
  Memory for a segment of a path: one for each leg, or one for an agent that stands.
  */
 typedef struct PcrF64SegmentStorage {
-  double opaque[32];
+  double opaque[33];
 } PcrF64SegmentStorage;
 
 /*

@@ -28,7 +28,7 @@ typedef struct PcrQ16Fleet {
  Memory for a segment of a path: one for each leg, or one for an agent that stands.
  */
 typedef struct PcrQ16SegmentStorage {
-  int32_t opaque[32];
+  int32_t opaque[33];
 } PcrQ16SegmentStorage;
 
 /*

@@ -14,7 +14,7 @@ mod number {
     pub(crate) type Real = f32;
     pub(crate) type Heading = f32;
 
-    pub(crate) const SEGMENT: usize = 32;
+    pub(crate) const SEGMENT: usize = 33;
     pub(crate) const MOTION: usize = 18;
     pub(crate) const PIECE: usize = 7;
 
