@@ -34,46 +34,35 @@ pub(crate) struct Standing<'a, S: Scalar> {
 
 /// Calls `found` with the lengths of contacts along the carrier of the segment, on an arc in `[0, circumference)`, and with the
 /// normal from the moving outline to the other.
+///
+/// With `far` with those at which the outlines overlap such that points of them are `other.radius` apart along a common normal, each on the inner side
+/// of the other one: contacts at the distance `-other.radius`, the far values of Theorems 2 and 3. The normal is that of the outline that stands, outward. Of
+/// a single point more are found than count.
+///
+/// The compiler makes a copy of all of it for each `found`: a caller with several lists of contacts goes through them in a loop.
 pub(crate) fn contacts<S: Scalar>(
     moving: &Carried<'_, S>,
     other: Standing<'_, S>,
+    far: bool,
     mut found: impl FnMut(S, Direction<S>),
 ) {
     match moving.carriage {
+        Carriage::Straight if far => far_contacts_on_line(moving, other, &mut found),
         Carriage::Straight => {
             if let Some(ends) = chord(moving, other) {
                 ends.into_iter().for_each(|(length, normal)| found(length, normal));
             }
         }
         Carriage::Turning(_) => {
-            corners_at_edges(moving, other, false, &mut found);
-            edges_at_corners(moving, other, false, &mut found);
-            corners_at_corners(moving, other, false, &mut found);
+            corners_at_edges(moving, other, far, &mut found);
+            edges_at_corners(moving, other, far, &mut found);
+            corners_at_corners(moving, other, far, &mut found);
         }
-        Carriage::Circling(circle) => contacts_on_circle(moving, circle, other, false, &mut found),
+        Carriage::Circling(circle) => contacts_on_circle(moving, circle, other, far, &mut found),
     }
 }
 
-/// Calls `found` with the lengths at which the outlines overlap such that points of them are `other.radius` apart along a common normal, each on the inner side
-/// of the other one: contacts at the distance `-other.radius`, the far values of Theorems 2 and 3. The normal is that of the outline that stands, outward. Of
-/// a single point more are found than count.
-pub(crate) fn far_contacts<S: Scalar>(
-    moving: &Carried<'_, S>,
-    other: Standing<'_, S>,
-    mut found: impl FnMut(S, Direction<S>),
-) {
-    match moving.carriage {
-        Carriage::Straight => far_contacts_on_line(moving, other, &mut found),
-        Carriage::Turning(_) => {
-            corners_at_edges(moving, other, true, &mut found);
-            edges_at_corners(moving, other, true, &mut found);
-            corners_at_corners(moving, other, true, &mut found);
-        }
-        Carriage::Circling(circle) => contacts_on_circle(moving, circle, other, true, &mut found),
-    }
-}
-
-/// [`far_contacts`] on a line.
+/// Far [`contacts`] on a line.
 fn far_contacts_on_line<S: Scalar>(
     moving: &Carried<'_, S>,
     other: Standing<'_, S>,
@@ -325,7 +314,7 @@ fn signed<S: Scalar>(other: Standing<'_, S>, far: bool) -> S {
 /// The lengths between which an outline on a line is within the radius of the other, with the normals there: the hull of the chords that the line
 /// cuts out of the capsules of all edges and corners of the difference of both (theorem 1 of `docs/theory/outlines.md`). All
 /// of these belong to the difference, so none has to be left out.
-fn chord<S: Scalar>(moving: &Carried<'_, S>, other: Standing<'_, S>) -> Option<[(S, Direction<S>); 2]> {
+pub(super) fn chord<S: Scalar>(moving: &Carried<'_, S>, other: Standing<'_, S>) -> Option<[(S, Direction<S>); 2]> {
     let (along, radius, slack) = (moving.segment.direction, other.radius, other.slack);
     let mut ends: Option<[(S, Direction<S>); 2]> = None;
     let mut add = |length: S, normal: Direction<S>| {

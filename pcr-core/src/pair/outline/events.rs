@@ -10,9 +10,9 @@
 //! The ends of slices are extreme at the same contacts with the roles exchanged (Lemma 3). Their lengths along the second segment are
 //! closed forms of the normal.
 
-use super::contacts::{Standing, add, between, contacts, direction_of, far_contacts, is_within, line_contacts};
+use super::contacts::{Standing, add, between, contacts, direction_of, is_within, line_contacts};
 use crate::array_vec::ArrayVec;
-use crate::geometry::{Direction, Point, Vector};
+use crate::geometry::{Direction, Interval, Point, Vector};
 use crate::outline::placed::{Carriage, Carried, Circle, Corners};
 use crate::outline::{Corner, MOST_CORNERS, opposite, supports, turned_back};
 use crate::scalar::{Scalar, Unit, Wide};
@@ -49,12 +49,23 @@ struct Found<'a, S: Scalar> {
     lengths: &'a mut Events<S>,
     end: S,
     fits: bool,
+    /// Of critical contacts: none, if the length of the outline that moves is an event; else the lengths of that one for which the other length is.
+    window: Option<Interval<S>>,
 }
 
 impl<S: Scalar> Found<'_, S> {
     fn add(&mut self, length: S) {
         if S::ZERO < length && length < self.end && !self.lengths.as_slice().contains(&length) {
             self.fits &= self.lengths.push(length);
+        }
+    }
+
+    /// Adds a critical contact of an outline: the length along the segment of the one that moves, and that along its own.
+    fn add_critical(&mut self, length: S, own: S) {
+        match self.window {
+            None => self.add(length),
+            Some(window) if window.contains(length) => self.add(own),
+            Some(_) => {}
         }
     }
 }
@@ -65,13 +76,13 @@ impl<S: Scalar> Carriers<'_, S> {
         let Self { first, second, radius, slack } = self;
         let end = second.segment.length;
         let mut lengths = ArrayVec::new(S::ZERO);
-        let mut found = Found { lengths: &mut lengths, end, fits: true };
+        let mut found = Found { lengths: &mut lengths, end, fits: true, window: None };
         for place in [S::ZERO, first.segment.length] {
             let corners = first.at(place, second.origin);
             let standing = Standing { corners: corners.as_slice(), radius: *radius, slack: *slack };
-            contacts(second, standing, |length, _| found.add(length));
+            contacts(second, standing, false, |length, _| found.add(length));
         }
-        critical(first, second, [*radius, *slack], |length, _| found.add(length));
+        critical(first, second, [*radius, *slack], &mut found);
         let fits = found.fits && lengths.push(S::ZERO) && lengths.push(end);
         lengths.sort();
         fits.then_some(lengths)
@@ -81,31 +92,34 @@ impl<S: Scalar> Carriers<'_, S> {
     pub(crate) fn turning(&self) -> Option<Events<S>> {
         let Self { first, second, radius, slack } = self;
         let mut lengths = ArrayVec::new(S::ZERO);
-        let mut found = Found { lengths: &mut lengths, end: second.segment.length, fits: true };
-        let length = first.segment.length;
-        critical(second, first, [*radius, *slack], |place, own| {
-            // A contact a little beyond an end of the first segment may be due to rounding.
-            if -*slack <= place && place <= length + *slack || !first.is_straight() {
-                found.add(own);
-            }
-        });
+        // A contact a little beyond an end of the first segment may be due to rounding.
+        let window = match first.is_straight() {
+            true => Interval::new(-*slack, first.segment.length + *slack),
+            false => Interval::new(-S::LIMIT, S::LIMIT),
+        };
+        let end = second.segment.length;
+        let mut found = Found { lengths: &mut lengths, end, fits: true, window: Some(window) };
+        critical(second, first, [*radius, *slack], &mut found);
         let fits = found.fits;
         lengths.sort();
         fits.then_some(lengths)
     }
 }
 
-/// Calls `found` with the critical contacts of an outline with one that moves: the length along the segment of the moving one,
+/// Adds the critical contacts of an outline with one that moves: the length along the segment of the moving one,
 /// and the length along that of the first one at which the contact takes place.
 fn critical<S: Scalar>(
     of: &Carried<'_, S>,
     moving: &Carried<'_, S>,
     [radius, slack]: [S; 2],
-    mut found: impl FnMut(S, S),
+    found: &mut Found<'_, S>,
 ) {
     match of.carriage {
-        Carriage::Straight => return critical_on_line(of, moving, [radius, slack], &mut found),
-        Carriage::Circling(circle) => return critical_on_circle([of, moving], circle, [radius, slack], &mut found),
+        Carriage::Straight => {
+            let mut add = |length: S, own: S| found.add_critical(length, own);
+            return critical_on_line(of, moving, [radius, slack], &mut add);
+        }
+        Carriage::Circling(circle) => return critical_on_circle([of, moving], circle, [radius, slack], found),
         Carriage::Turning(_) => {}
     }
     let all = criticals(of, slack);
@@ -117,20 +131,18 @@ fn critical<S: Scalar>(
         if all.as_slice().iter().take(index).any(|other| alike(&other)) {
             continue;
         }
-        let mut add = |length: S, normal: Direction<S>| {
-            for one in all.as_slice().iter().filter(alike) {
-                found(length, of.length_of(turned_back(normal, one.normal)));
-            }
-        };
         let distance = own.radius + radius;
-        if distance > -slack {
-            let corners = core::slice::from_ref(&centre);
-            let standing = Standing { corners, radius: distance.max(slack), slack };
-            contacts(moving, standing, |length, normal| add(length, opposite(normal)));
-        }
-        if distance < slack {
-            let corners = core::slice::from_ref(&centre);
-            far_contacts(moving, Standing { corners, radius: (-distance).max(slack), slack }, &mut add);
+        for (distance, far) in [(distance, false), (-distance, true)] {
+            if distance <= -slack {
+                continue;
+            }
+            let standing = Standing { corners: core::slice::from_ref(&centre), radius: distance.max(slack), slack };
+            contacts(moving, standing, far, |length, normal| {
+                let normal = if far { normal } else { opposite(normal) };
+                for one in all.as_slice().iter().filter(alike) {
+                    found.add_critical(length, of.length_of(turned_back(normal, one.normal)));
+                }
+            });
         }
     }
 }
@@ -166,26 +178,26 @@ fn critical_on_circle<S: Scalar>(
     [of, moving]: [&Carried<'_, S>; 2],
     circle: Circle<S>,
     [radius, slack]: [S; 2],
-    found: &mut impl FnMut(S, S),
+    found: &mut Found<'_, S>,
 ) {
     let shift = of.origin - moving.origin;
     let mut corners = Corners::new(Corner::CENTRE);
     for corner in of.corners.as_slice() {
         corners.add(Corner { at: add(corner.at, shift), ..*corner }, true);
     }
-    let at = |radius: S| Standing { corners: corners.as_slice(), radius, slack };
-    // The normal is that of the other outline.
-    contacts(moving, at(radius + circle.radius), |length, normal| {
-        found(length, of.length_towards(circle, opposite(normal)));
-    });
     let inside = radius - circle.radius;
-    if inside > -slack {
-        contacts(moving, at(inside.max(slack)), |length, normal| found(length, of.length_towards(circle, normal)));
-    }
-    if inside < slack {
-        // Here it is that of the first one.
-        far_contacts(moving, at((-inside).max(slack)), |length, normal| {
-            found(length, of.length_towards(circle, opposite(normal)));
+    // The normal is that of the outline that moves, of far contacts that of the one that stands: only inside of the circle does it point away from
+    // the centre.
+    for (distance, far, outward) in
+        [(radius + circle.radius, false, false), (inside, false, true), (-inside, true, false)]
+    {
+        if distance <= -slack {
+            continue;
+        }
+        let standing = Standing { corners: corners.as_slice(), radius: distance.max(slack), slack };
+        contacts(moving, standing, far, |length, normal| {
+            let towards = if outward { normal } else { opposite(normal) };
+            found.add_critical(length, of.length_towards(circle, towards));
         });
     }
 }

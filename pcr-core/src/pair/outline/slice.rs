@@ -4,7 +4,7 @@
 //! into gaps, in each of which the outlines are either nearer than R throughout or farther; the distance at one place
 //! of a gap tells which. So a contact that was found twice, or is none, only cuts an interval into two that are put together again.
 
-use super::contacts::{Standing, contacts, on_segment};
+use super::contacts::{Standing, chord, contacts, on_segment};
 use super::distance::clearance;
 use crate::array_vec::ArrayVec;
 use crate::geometry::{Interval, Point};
@@ -35,7 +35,7 @@ pub(crate) fn parts<S: Scalar>(moving: &Carried<'_, S>, other: Standing<'_, S>) 
     }
     let mut cuts = ArrayVec::<S, MOST_CUTS>::new(S::ZERO);
     let mut fits = true;
-    contacts(moving, other, |cut, _| {
+    contacts(moving, other, false, |cut, _| {
         if S::ZERO < cut && cut < length {
             fits &= cuts.push(cut);
         }
@@ -62,9 +62,7 @@ pub(crate) fn parts<S: Scalar>(moving: &Carried<'_, S>, other: Standing<'_, S>) 
 
 /// Returns the part of a line on which the moving outline is within the radius of the other.
 pub(crate) fn part_of_line<S: Scalar>(moving: &Carried<'_, S>, other: Standing<'_, S>) -> Option<Interval<S>> {
-    let mut ends = [None; 2];
-    contacts(moving, other, |length, _| ends = [ends[1], Some(length)]);
-    let [Some(lo), Some(hi)] = ends else { return None };
+    let [(lo, _), (hi, _)] = chord(moving, other)?;
     on_segment([lo, hi], moving.segment.length)
 }
 
