@@ -351,7 +351,7 @@ budgets() {
 # docs/maintain/firmware.md says what is bought with it, and what stands in the way of 16 KiB, which was the aim.
 thumb_budget=22528
 # 32-bit instructions where Thumb has 16-bit ones.
-riscv_budget=26368
+riscv_budget=26624
 
 # One line of both compilers: figures depend on it.
 compiler() {

@@ -10,8 +10,8 @@ fn the_constants_of_the_firmware_are_generated_from_the_scenario_of_the_tool() {
     assert_eq!(committed, pcr_tests::constants::source(), "run `cargo run -p pcr-tests --example constants`");
 }
 
-/// Bytes of a segment in firmware, which leaves out outlines and with them the direction in which a body looks.
-const SEGMENT_BYTES: usize = size_of::<Segment<f32>>() - size_of::<Direction<f32>>();
+/// Bytes of a segment in firmware, which leaves out outlines and with them the direction in which a body looks, and whether it keeps that.
+const SEGMENT_BYTES: usize = size_of::<Segment<f32>>() - size_of::<(Direction<f32>, bool)>();
 
 /// Bytes that each agent's motion takes beside its segments, on the Cortex-M4F in `f32`, as it was measured for 12 agents.
 fn bytes_an_agent() -> usize {
