@@ -124,6 +124,11 @@ impl<S: Scalar> Direction<S> {
     }
 }
 
+/// The direction of the angle of the first minus that of the second.
+pub(crate) fn turned_back<S: Scalar>(direction: Direction<S>, by: Direction<S>) -> Direction<S> {
+    Direction { cos: by.dot(direction), sin: by.cross(direction) }
+}
+
 /// Position and heading.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]

@@ -241,11 +241,6 @@ pub(crate) fn supports<S: Scalar>(corners: &[Corner<S>], index: usize, direction
         && before.length.scale(-before.outward.cross(direction)) <= by
 }
 
-/// The direction of the angle of the first minus that of the second.
-pub(crate) fn turned_back<S: Scalar>(direction: Direction<S>, by: Direction<S>) -> Direction<S> {
-    Direction { cos: by.dot(direction), sin: by.cross(direction) }
-}
-
 /// The opposite direction.
 pub(crate) fn opposite<S: Scalar>(direction: Direction<S>) -> Direction<S> {
     Direction { cos: S::Unit::ZERO - direction.cos, sin: S::Unit::ZERO - direction.sin }

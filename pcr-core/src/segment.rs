@@ -15,8 +15,7 @@ mod proximity;
 pub(crate) use proximity::{ROW, in_box};
 
 use crate::error::{self, InvalidInput, in_range};
-use crate::geometry::{Aabb, Direction, Point, Pose, Vector};
-use crate::outline::turned_back;
+use crate::geometry::{Aabb, Direction, Point, Pose, Vector, turned_back};
 use crate::scalar::{Angle, AngleSector, Scalar, Unit};
 
 /// Side to which an arc bends.

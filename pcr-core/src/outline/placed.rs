@@ -2,8 +2,8 @@
 //! on a steady arc translated along a circle.
 
 use crate::array_vec::ArrayVec;
-use crate::geometry::{Direction, Point, Vector};
-use crate::outline::{Corner, MOST_CORNERS, OutlineRef, opposite, turned_back};
+use crate::geometry::{Direction, Point, Vector, turned_back};
+use crate::outline::{Corner, MOST_CORNERS, OutlineRef, opposite};
 use crate::scalar::{Angle, Scalar};
 use crate::segment::{Curve, Segment};
 

@@ -16,9 +16,9 @@
 //! at a distance of less than R, which do no harm: they are cuts, not ends. Without it, rounding might reject a contact in two forms.
 
 use crate::array_vec::ArrayVec;
-use crate::geometry::{Direction, Interval, Vector};
+use crate::geometry::{Direction, Interval, Vector, turned_back};
 use crate::outline::placed::{Carriage, Carried, Circle};
-use crate::outline::{Corner, MOST_CORNERS, opposite, supports, turned_back};
+use crate::outline::{Corner, MOST_CORNERS, opposite, supports};
 use crate::scalar::{Scalar, Wide};
 
 /// An outline that stands, and how near another one comes.

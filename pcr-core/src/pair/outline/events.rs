@@ -12,9 +12,9 @@
 
 use super::contacts::{Standing, add, between, contacts, direction_of, is_within, line_contacts};
 use crate::array_vec::ArrayVec;
-use crate::geometry::{Direction, Interval, Point, Vector};
+use crate::geometry::{Direction, Interval, Point, Vector, turned_back};
 use crate::outline::placed::{Carriage, Carried, Circle, Corners};
-use crate::outline::{Corner, MOST_CORNERS, opposite, supports, turned_back};
+use crate::outline::{Corner, MOST_CORNERS, opposite, supports};
 use crate::scalar::{Scalar, Unit, Wide};
 
 /// Largest number of events.
