@@ -53,6 +53,26 @@ impl LifelongState {
             });
         }
         self.own = Some(own);
+        self.reach_where_they_stand(now);
+    }
+
+    /// Counts the next stops of vehicles that stand there already: a mission may begin where its vehicle is, and a vehicle may have been sent there
+    /// to make way.
+    fn reach_where_they_stand(&mut self, now: f64) {
+        for robot in 0..self.robots.len() {
+            let it = &self.robots[robot];
+            let is_there =
+                self.missions[robot].is_some_and(|mission| !mission.admitted && mission.goal == it.way.end());
+            if !is_there || !it.has_arrived() || it.cut.is_some() {
+                continue;
+            }
+            if let Some(own) = &mut self.own
+                && let Some(mission) = own.current[robot]
+            {
+                own.missions[mission].begun.get_or_insert(now);
+            }
+            self.arrived(robot, now);
+        }
     }
 
     /// Time of a robot alone until it is at all of these nodes of the layout, one after the other; infinite if no route leads there

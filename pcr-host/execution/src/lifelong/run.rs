@@ -156,7 +156,8 @@ impl LifelongState {
         }
     }
 
-    fn arrived(&mut self, robot: usize, now: f64) {
+    /// Counts a robot as having come to its goal.
+    pub(super) fn arrived(&mut self, robot: usize, now: f64) {
         self.reached_stop(robot, now);
         self.outcome.missions += 1;
         self.last_arrival = now;

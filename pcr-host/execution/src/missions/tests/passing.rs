@@ -45,6 +45,26 @@ fn vehicles_that_cannot_change_places_are_told_at_once() {
     assert_eq!(run(&wide, &large).0, [why(a, b, 2)]);
 }
 
+/// Nobody has to drive for a stop where the vehicle stands: not where the mission begins, and not where it was sent to make way.
+#[test]
+fn stops_are_reached_where_a_vehicle_stands() {
+    // A round with one bay, which is the only place to park.
+    let round = [[0.0, 0.0], [10.0, 0.0], [10.0, 10.0], [0.0, 10.0], [-5.0, 10.0]];
+    let edges = [(10, [0, 1]), (11, [1, 2]), (12, [2, 3]), (13, [3, 0]), (14, [3, 4]), (15, [4, 3])];
+    let round = site(&round, &edges);
+    for (start, mission, least, most) in [
+        (4, r#""to": 4"#, 0.0, 1.0),
+        (2, r#""to": 2"#, 0.0, 60.0),
+        (2, r#""from": 2, "to": 4"#, 5.0, 60.0),
+        (2, r#""to": 4"#, 5.0, 60.0),
+    ] {
+        let text = vehicles(&[start, 1]) + &format!(r#"{{"id": "m", "vehicle": "a", {mission}}}"#);
+        let (reasons, duration) = run(&round, &text);
+        assert_eq!(reasons, [None], "{mission}");
+        assert!((least..most).contains(&duration), "{mission}: {duration}");
+    }
+}
+
 /// Each vehicle alone comes past each other one, but not all of them.
 #[test]
 fn vehicles_that_take_all_places_to_make_way_are_told_at_once() {
