@@ -66,7 +66,7 @@ impl<S: Scalar, const N: usize> Path<S, N> {
         Ok(self)
     }
 
-    /// Appends an arc of this radius \[m\] and length \[m\] on which the body keeps its heading, as a vehicle with steered wheels only can. Behind it the
+    /// Appends an arc of this radius \[m\] and length \[m\] on which the body keeps its heading, as only vehicles with all wheels steered, or with Mecanum wheels, can. Behind it the
     /// body goes on at the angle to the direction of travel that it has there, until [`Path::facing`].
     ///
     /// # Errors

@@ -172,7 +172,7 @@ impl<S: Scalar> Segment<S> {
         self.then_turning(Curve::Arc { radius, turn }, [radius, length], turn)
     }
 
-    /// The arc of [`Segment::then_arc`] on which the body keeps its heading, that at its start, as a vehicle with steered wheels only can. On the segments
+    /// The arc of [`Segment::then_arc`] on which the body keeps the heading that it has at its start. On the segments
     /// that continue it the body is at the angle to the direction of travel that it has at the end of the arc.
     ///
     /// # Errors

@@ -106,7 +106,7 @@ impl<'a, S: Scalar> Carried<'a, S> {
         corners
     }
 
-    /// Whether it is a line.
+    /// Returns whether the segment is a line.
     pub(crate) fn is_straight(&self) -> bool {
         matches!(self.carriage, Carriage::Straight)
     }

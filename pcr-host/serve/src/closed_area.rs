@@ -72,7 +72,7 @@ pub(crate) type AreaLengths = Option<Vec<Interval<f64>>>;
 pub(crate) struct AreasOnPath {
     /// Number of the path, and revision of the areas.
     pub(crate) of: (u64, u64),
-    /// Those that are on it, by name.
+    /// Names and lengths of the areas that are on the path.
     pub(crate) shut: Vec<(String, AreaLengths)>,
     /// Where the first one ahead begins, when it was last looked \[m\].
     pub(crate) limit: Option<f64>,

@@ -49,7 +49,8 @@ struct Found<'a, S: Scalar> {
     lengths: &'a mut Events<S>,
     end: S,
     fits: bool,
-    /// Of critical contacts: none, if the length of the outline that moves is an event; else the lengths of that one for which the other length is.
+    /// What is added of a critical contact: without a window the length of the outline that moves, with one the length of the other outline, if the first
+    /// is in the window.
     window: Option<Interval<S>>,
 }
 

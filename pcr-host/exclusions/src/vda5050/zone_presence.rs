@@ -139,7 +139,7 @@ impl OutlinePresence<'_> {
         all
     }
 
-    /// The same as lengths on the path of a ride.
+    /// Returns the lengths on the path of a ride at which the vehicle is in a zone.
     fn of_ride(
         &self,
         step: RouteStep<'_>,

@@ -1,8 +1,9 @@
 //! Records the motions of robots for the independent checker, which finds any contact during a run.
 
 use super::robot::{LifelongRobot, RobotPhase};
-use super::route_element::{STRAIGHT, wrapped};
+use super::route_element::STRAIGHT;
 use super::route_graph::RouteGraph;
+use pcr_formats::plane_geometry::wrapped;
 
 use pcr_certify::error::CertifyError;
 use pcr_certify::motion::{MotionFindings, Mover, meetings};

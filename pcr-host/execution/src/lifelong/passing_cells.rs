@@ -1,8 +1,8 @@
 //! Where two robots can be at the same time, whatever the others do: one on an edge, the other at a node or on another edge. On two
 //! edges the lengths of both are a rectangle, in which both only go forward; a region of contact is passed on one side.
 //!
-//! What is found to be impossible here is impossible: where several regions would have to be passed, each is looked at alone, and
-//! outlines are not hindered by turns.
+//! An error is only possible to one side: two robots that cannot pass here cannot pass at all, but not all that can pass here can. Where several
+//! regions have to be passed, each is looked at alone, turns of outlines hinder nobody, and regions that cannot be computed are left out.
 
 use super::route_graph::RouteGraph;
 use pcr_core::RegionRef;

@@ -89,7 +89,8 @@ impl LifelongState {
                         format!("{id} (at node {})", self.name_of(it.start % self.site.places()))
                     };
                     let names: Vec<String> = group.iter().map(at).collect();
-                    let (first, others) = names.split_first()?;
+                    // That it can come there alone has been found out before.
+                    let (first, others) = names.split_first().filter(|(_, others)| !others.is_empty())?;
                     return Some(format!(
                         "vehicle {first}: {} cannot make way for it to node {} and drive on again",
                         others.join(", "),

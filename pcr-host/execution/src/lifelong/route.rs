@@ -1,9 +1,10 @@
 //! The path of a robot from node to node, its stops, and its times if no other robot is in the way.
 
 use super::kinematic_limits::KinematicLimits;
-use super::route_element::{RouteElement, STRAIGHT, wrapped};
+use super::route_element::{RouteElement, STRAIGHT};
 use super::route_graph::{DeparturePose, RouteGraph};
 use pcr_core::Curve;
+use pcr_formats::plane_geometry::wrapped;
 
 /// A place where a robot stops, and turns if it is a disc.
 #[derive(Clone, Copy, Debug)]

@@ -3,9 +3,9 @@
 use super::kinematic_limits::KinematicLimits;
 use pcr_core::{InvalidInput, Motion, PathRef, Phase, Point, Pose, ProfileRef, Radians, Segment, TurnSide};
 use pcr_formats::import::{Layout, RouteStep, VehicleTraits};
+use pcr_formats::plane_geometry::wrapped;
 use pcr_formats::scenario::{PathSegment, PlacedSegment};
 use pcr_planning::fleet::ConvexBody;
-use std::f64::consts::{PI, TAU};
 
 /// Largest change of direction that is not a corner \[rad\].
 pub(super) const STRAIGHT: f64 = 1e-6;
@@ -178,11 +178,6 @@ impl RouteElement {
         let point = PathRef::new(&self.segments).map(|path| path.point_at(length)).unwrap_or_default();
         [point.x, point.y]
     }
-}
-
-/// An angle from -π to π.
-pub(super) fn wrapped(angle: f64) -> f64 {
-    (angle + PI).rem_euclid(TAU) - PI
 }
 
 fn side(turn: f64) -> TurnSide {

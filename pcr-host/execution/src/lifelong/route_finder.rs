@@ -4,8 +4,8 @@
 //! and kept for the most recent goals.
 
 use super::kinematic_limits::KinematicLimits;
-use super::route_element::wrapped;
 use super::route_graph::{DeparturePose, RouteGraph};
+use pcr_formats::plane_geometry::wrapped;
 use std::cell::RefCell;
 use std::cmp::Ordering;
 use std::collections::{BinaryHeap, HashMap, HashSet, VecDeque};

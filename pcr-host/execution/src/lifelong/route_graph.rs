@@ -9,10 +9,11 @@
 
 use super::gates::ElementContact;
 use super::kinematic_limits::KinematicLimits;
-use super::route_element::{ElementMaker, RouteElement, STRAIGHT, wrapped};
+use super::route_element::{ElementMaker, RouteElement, STRAIGHT};
 use crate::error::ExecutionError;
 use pcr_core::{InvalidInput, Motion};
 use pcr_formats::import::{Facing, ImportedLayout, Layout, RouteStep, VehicleTraits};
+use pcr_formats::plane_geometry::wrapped;
 use pcr_formats::scenario::PathSegment;
 use pcr_planning::fleet::ConvexBody;
 use std::cell::{OnceCell, RefCell};

@@ -5,10 +5,11 @@
 //! has in between.
 
 use super::robot::{LifelongRobot, RobotPhase};
-use super::route_element::{STRAIGHT, wrapped};
+use super::route_element::STRAIGHT;
 use super::route_graph::RouteGraph;
 use crate::error::DrivenError;
 use pcr_core::{Curve, TurnSide};
+use pcr_formats::plane_geometry::wrapped;
 use pcr_formats::scenario::{Agent, MotionPiece, MotionSpec, PathSegment, PlacedSegment};
 use std::collections::VecDeque;
 

@@ -97,7 +97,7 @@ impl Facing {
         }
     }
 
-    /// The same where the direction of travel is `ahead` \[rad\].
+    /// Returns the angle from the direction of travel to its heading \[rad\] at a place where the direction of travel is `ahead`, if that is known.
     pub fn angle_at(self, ahead: f64) -> Option<f64> {
         match self {
             Self::Steady(FacingAngle(heading)) => Some(wrapped(f64::from_bits(heading) - ahead)),

@@ -2,9 +2,10 @@
 
 use super::decode::DecodeError;
 use super::header::message;
+use crate::plane_geometry::wrapped;
 use serde::{Deserialize, Serialize};
 use serde_json::{Map, Value};
-use std::f64::consts::{FRAC_PI_2, PI, TAU};
+use std::f64::consts::{FRAC_PI_2, PI};
 
 /// Least and largest speed to which a zone may limit vehicles \[m/s\].
 const SPEEDS: [f64; 2] = [1e-3, 1e4];
@@ -83,7 +84,7 @@ impl OneWay {
     /// Whether a straight way from one point to another is against it.
     pub fn forbids(&self, from: [f64; 2], to: [f64; 2]) -> bool {
         let travels = (to[1] - from[1]).atan2(to[0] - from[0]);
-        let off = ((travels - self.direction + PI).rem_euclid(TAU) - PI).abs();
+        let off = wrapped(travels - self.direction).abs();
         let off = if self.both { off.min(PI - off) } else { off };
         off > self.off && from != to
     }

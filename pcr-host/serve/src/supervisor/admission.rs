@@ -94,8 +94,8 @@ impl Supervisor {
         self.mission_in_parts(proposal, Vec::new(), now)
     }
 
-    /// The same for a mission that need not be admitted as a whole: as long as it has to wait, it is admitted up to the last of these ends that is
-    /// possible, and the rest of it waits.
+    /// Takes a mission, as [`Supervisor::mission`] does, that may be admitted in parts: while the whole of it has to wait, it is admitted up to the last
+    /// of these ends that is possible, and the rest waits.
     ///
     /// # Errors
     /// As [`Supervisor::mission`].

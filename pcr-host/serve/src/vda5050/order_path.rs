@@ -13,14 +13,14 @@ pub use trajectory::TOLERANCE;
 
 use super::edge_orientation::EdgeOrientation;
 use crate::owned_path::{PathElement, StartPose};
-use pcr_formats::plane_geometry::distance;
+use pcr_formats::plane_geometry::{distance, wrapped};
 use pcr_formats::scenario::{PathSegment, PlacedSegment};
 use pcr_formats::vda5050::decode::DecodeError;
 use pcr_formats::vda5050::order::{OrderEdge, OrderNode};
 use pcr_formats::vda5050::order_state::OrderState;
 use pcr_formats::vda5050::state::VehiclePosition;
 use segment::{LEVER, OrderPathSegment, OrderPathShape, along};
-use std::f64::consts::{PI, TAU};
+use std::f64::consts::TAU;
 
 /// Shortest line \[m\]: below this its direction may be rounding.
 const NEAR: f64 = 1e-6;
@@ -320,11 +320,6 @@ impl OrderPath {
     }
 }
 
-/// The angle between half a turn to the right and to the left \[rad\].
-pub(crate) fn wrapped(angle: f64) -> f64 {
-    (angle + PI).rem_euclid(TAU) - PI
-}
-
 /// Position of a node.
 fn position(node: &OrderNode, place: usize) -> Result<[f64; 2], DecodeError> {
     let position = node.node_position.as_ref().map(|position| [position.x, position.y]);
@@ -337,6 +332,7 @@ mod tests {
     use pcr_formats::vda5050::decode::{MessageLimits, read};
     use pcr_formats::vda5050::order::Order;
     use serde_json::{Value, json};
+    use std::f64::consts::PI;
 
     fn order_with_points(points: &[[f64; 2]], curve: Option<Value>) -> OrderState {
         let nodes: Vec<_> = (points.iter().enumerate())

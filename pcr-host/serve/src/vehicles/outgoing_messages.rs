@@ -2,6 +2,7 @@
 
 use super::vehicle::SimulatedVehicle;
 use crate::vda5050::remaining_elements::{EdgeStateOut, NodeStateOut};
+use pcr_formats::plane_geometry::wrapped;
 use pcr_formats::vda5050::header::MessageHeader;
 use pcr_formats::vda5050::messages::{Connection, Visualization};
 use pcr_formats::vda5050::state::{PartialList, State, VehiclePosition, Velocity};
@@ -10,7 +11,7 @@ use pcr_formats::vda5050::topics::TopicKind;
 use pcr_formats::vda5050::version::ProtocolVersion;
 use serde::Serialize;
 use serde_json::{Map, Value, json};
-use std::f64::consts::{PI, TAU};
+use std::f64::consts::TAU;
 
 impl SimulatedVehicle {
     fn header(&mut self, kind: TopicKind) -> MessageHeader {
@@ -27,7 +28,7 @@ impl SimulatedVehicle {
     fn pose(&mut self) -> VehiclePosition {
         let [x, y] = self.true_position();
         let (noise, angle) = (self.abilities.noise * self.random.unit(), self.random.unit() * TAU);
-        let theta = (self.heading() + PI).rem_euclid(TAU) - PI;
+        let theta = wrapped(self.heading());
         let is_third = self.version == ProtocolVersion::V3_0;
         VehiclePosition {
             x: x + noise * angle.cos(),

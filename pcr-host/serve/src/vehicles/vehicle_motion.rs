@@ -1,8 +1,9 @@
 //! The motion of a vehicle along a way: it stops where it has to, and turns in place at corners.
 
 use crate::owned_path::PathElement;
-use crate::vda5050::order_path::{OrderPath, wrapped};
+use crate::vda5050::order_path::OrderPath;
 use pcr_formats::footprint::Footprint;
+use pcr_formats::plane_geometry::wrapped;
 use pcr_formats::splitmix64::SplitMix64;
 use pcr_formats::vda5050::order_state::OrderState;
 use serde::{Deserialize, Serialize};

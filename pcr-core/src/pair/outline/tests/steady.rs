@@ -3,7 +3,8 @@
 use super::*;
 
 impl Case {
-    /// The same with bodies that keep their heading on most arcs, at any angle to the direction of travel at the start, and with a disc now and then.
+    /// Returns the case with bodies that keep their heading on most arcs, and with a disc in place of some outline. At the start the angle to the
+    /// direction of travel is anything.
     pub(super) fn with_steady(mut self, random: &mut Random) -> Self {
         for step in self.segments.iter_mut().flatten() {
             if let Step::Arc(radius, length) = *step

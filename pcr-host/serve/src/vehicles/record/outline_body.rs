@@ -4,7 +4,7 @@ use super::RecordVehicle;
 use pcr_certify::outline::{RawBody, RawBodySegment, RawCourse, RawHeading, RawOutline};
 use pcr_certify::raw::{RawAngle, RawMotion, RawPhase};
 use pcr_formats::footprint::Footprint;
-use std::f64::consts::{PI, TAU};
+use pcr_formats::plane_geometry::wrapped;
 
 /// Rounding of the corners of an outline, relative.
 const ROUNDING: f64 = 1e-12;
@@ -24,7 +24,7 @@ pub(super) fn unwound(track: &[[f64; 4]]) -> Vec<[f64; 4]> {
             all.push([time, x, y, heading]);
             continue;
         };
-        let turn = (heading - h0 + PI).rem_euclid(TAU) - PI;
+        let turn = wrapped(heading - h0);
         let heading = if turn.abs() > SAME { h0 + turn } else { h0 };
         if [x0, y0] != [x, y] && heading != h0 {
             all.push([t0 + 0.5 * (time - t0), x, y, h0]);
